@@ -1,0 +1,176 @@
+"""From a resolved scene to the compiled builder: one call for each material, shape, light and setting."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from accuray import data
+from accuray.devices.rgb_table import rgb_table
+from accuray.scene import Scene, SceneError, Spectrum
+from accuray.scene import schema as schemas
+
+Values = dict[str, Any]
+
+
+MeshReport = dict[str, Any]
+
+
+def lower(scene: Scene) -> tuple[Any, dict[str, MeshReport]]:
+    """The scene's relocatable block (``accuray._core.lower.Block``), and by shape what its mesh lost on the way.
+
+    Raises SceneError for what only the builder can find out, such as a camera that looks at itself.
+    """
+    lowering = _Lowering(scene)
+    return lowering.block(), lowering.reports
+
+
+class _Lowering:
+    """Walks the resolved tables once; names become the numbers that the block uses."""
+
+    def __init__(self, scene: Scene) -> None:
+        from accuray._core import lower as core
+
+        self.scene = scene
+        self.cmf, self.d65 = colour_arrays()
+        self.builder = core.SceneBuilder(self.cmf, self.d65)
+        self._has_rgb_table = False
+        self._spectra: dict[Spectrum, Any] = {}
+        self.materials: dict[str, int] = {}
+        self.reports: dict[str, MeshReport] = dict(scene.mesh_reports)
+
+    def block(self) -> Any:
+        """Adds everything in a fixed order and finishes the block."""
+        builder, film = self.builder, self.scene.film
+        for name, material in self.scene.materials.items():
+            self._guard(f"materials.{name}", partial(self._add_material, name, material))
+        self._add_shapes()
+        for name, light in self.scene.lights.items():
+            self._guard(f"lights.{name}", partial(self._add_light, light))
+        aspect = film["width"] / film["height"]
+        camera, pixel_filter, integrator = self.scene.camera, self.scene.filter, self.scene.integrator
+        self._guard("camera", partial(builder.set_camera, camera["type"], self._values("camera", camera), aspect))
+        builder.set_filter(pixel_filter["type"], self._values("filter", pixel_filter))
+        builder.set_integrator(integrator["type"], self._values("integrator", integrator))
+        builder.set_film(film["unit"], film["hide_environment"])
+        return builder.finish()
+
+    def _guard(self, key: str, action: Callable[[], Any]) -> Any:
+        try:
+            return action()
+        except ValueError as error:
+            file = None if self.scene.path is None else str(self.scene.path)
+            raise SceneError(str(error), file=file, key=key) from error
+
+    def _values(self, family: str, table: Values) -> Values:
+        """The numbers, vectors, choices and spectra of a table; the rest has no place in the kernels' structs."""
+        values: Values = {}
+        for param in schemas.current().family(family).types[table["type"]].params:
+            value = table.get(param.name)
+            if value is None or param.kind in ("text", "file", "transform", "array", "reference"):
+                continue
+            if param.kind == "enum":
+                value = param.choices.index(value)
+            elif param.kind == "spectrum":
+                value = self._spectrum(value)
+            values[param.name] = float(value) if param.kind in ("float", "int", "enum") else value
+        return values
+
+    def _add_material(self, name: str, material: Values) -> None:
+        emission = material["emission"]
+        self.materials[name] = self.builder.add_material(
+            material["type"],
+            self._values("bsdf", material),
+            None if emission is None else self._spectrum(emission),
+            material["emission_sides"] == "both",
+        )
+
+    def _add_shapes(self) -> None:
+        """First what the scene shows itself, then the prototypes, group by group, with their instances."""
+        instances = {name: table for name, table in self.scene.shapes.items() if table["type"] == "instance"}
+        others = {name: table for name, table in self.scene.shapes.items() if name not in instances}
+        for name, table in others.items():
+            if not table["prototype"]:
+                self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
+        groups: dict[tuple[str, ...], int] = {}
+        for name, table in instances.items():
+            members = tuple(table["of"])
+            if members not in groups:
+                numbers = [self._guard(f"shapes.{m}", partial(self._add_shape, m, others[m])) for m in members]
+                groups[members] = numbers[0]
+            material = None if table["material"] is None else self.materials[table["material"]]
+            add = partial(self.builder.add_instance, groups[members], len(members), _matrix(table["transform"]), material)
+            self._guard(f"shapes.{name}", add)
+
+    def _add_shape(self, name: str, table: Values) -> int:
+        material, transform = self.materials[table["material"]], _matrix(table["transform"])
+        number: int
+        if table["type"] == "mesh":
+            number = self.builder.add_mesh(*self._mesh(name, table), transform, material, table["prototype"])
+        else:
+            values = self._values("shape", table)
+            number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
+        return number
+
+    def _mesh(self, name: str, table: Values) -> tuple[Any, Any, Any, Any]:
+        """Positions, indices, normals and uvs; arrays that came from no file are repaired first, as readers do."""
+        from accuray._core import mesh as core
+
+        positions, faces, normals, uvs = (table[key] for key in ("positions", "faces", "normals", "uvs"))
+        if table["file"] is None:
+            mesh = core.repair(positions, faces, normals, uvs)
+            positions, faces, normals, uvs = mesh.positions, mesh.indices, mesh.normals, mesh.uvs
+            if mesh.report["nonfinite_triangles"] or mesh.report["degenerate_triangles"]:
+                self.reports[name] = mesh.report
+        if table["shading"] == "flat":
+            normals = None
+        elif table["shading"] == "smooth" and normals is None:
+            normals = core.smooth_normals(positions, faces)
+        return positions, faces, normals, uvs
+
+    def _add_light(self, light: Values) -> None:
+        emission = next(v for v in light.values() if isinstance(v, Spectrum))
+        self.builder.add_light(light["type"], self._values("light", light), self._spectrum(emission))
+
+    def _spectrum(self, spectrum: Spectrum) -> Any:
+        """The builder's reference to a spectrum; equal spectra share one."""
+        if spectrum not in self._spectra:
+            self._spectra[spectrum] = self._make_spectrum(spectrum)
+        return self._spectra[spectrum]
+
+    def _make_spectrum(self, s: Spectrum) -> Any:
+        b = self.builder
+        if s.form == "constant":
+            return b.spectrum_constant(s.value * s.scale)
+        if s.form == "table":
+            points, values = np.array(s.wavelengths, dtype=np.float64), np.array(s.values, dtype=np.float64)
+            return b.spectrum_table(points, values, s.extrapolate == "hold", s.scale)
+        if s.form == "blackbody":
+            return b.spectrum_blackbody(s.kelvin, s.scale)
+        if s.form == "sellmeier":
+            return b.spectrum_sellmeier(s.A0, list(s.B), list(s.C), s.scale)
+        if s.form == "cauchy":
+            return b.spectrum_cauchy(s.A0, s.B[0], s.scale)
+        if len(set(s.rgb)) > 1 and not self._has_rgb_table:
+            b.set_rgb_table(*rgb_table(self.cmf, self.d65))
+            self._has_rgb_table = True
+        add = b.spectrum_rgb_emission if s.role == "emission" else b.spectrum_rgb_reflectance
+        return add(*s.rgb, s.scale)
+
+
+def colour_arrays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """CIE 1931 functions (471, 3) and D65 (471,), scaled to Y = 1, at 360, 361, ... 830 nm."""
+    observer = data.observer()
+    cmf = np.ascontiguousarray(np.array([observer.x, observer.y, observer.z], dtype=np.float64).T)
+    points, values = data.illuminants()["D65"]
+    white = np.interp(np.arange(360.0, 831.0), points, values)
+    return cmf, white * (cmf[:, 1].sum() / np.dot(white, cmf[:, 1]))
+
+
+def _matrix(transform: NDArray[np.float64] | None) -> list[float] | None:
+    """The upper three rows of a 4x4 matrix, row by row."""
+    return None if transform is None else [float(value) for value in transform[:3].ravel()]

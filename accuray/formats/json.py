@@ -1,0 +1,48 @@
+"""Scene files in JSON, for programs that write scenes: the same structure as TOML."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from accuray.scene.errors import SceneError, show
+
+
+class _Refused(ValueError):
+    """JSON that Python would read but a scene file may not hold."""
+
+
+def parse(text: str, name: str) -> dict[str, Any]:
+    """The object in a JSON text; SceneError with ``name``, line and column for a syntax error.
+
+    Duplicate keys and the non-standard constants NaN and Infinity are refused.
+    """
+    try:
+        content = json.loads(text, object_pairs_hook=_unique, parse_constant=_refuse_constant)
+    except json.JSONDecodeError as error:
+        raise SceneError(
+            f"column {error.colno}: JSON syntax error: {error.msg}",
+            file=name,
+            line=error.lineno,
+            shown=text.split("\n")[error.lineno - 1],
+        ) from None
+    except RecursionError:
+        raise SceneError("is nested too deeply", file=name, allowed="a few levels of lists and objects") from None
+    except ValueError as error:
+        raise SceneError(f"JSON value error: {error}", file=name) from None
+    if not isinstance(content, dict):
+        raise SceneError(f"{show(content)} is not an object", file=name, value=content, allowed='{"accuray": 1, ...}')
+    return content
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    table = dict(pairs)
+    if len(table) != len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise _Refused(f"the key {show(twice)} is there twice in one object")
+    return table
+
+
+def _refuse_constant(name: str) -> float:
+    raise _Refused(f"{name} is not a number of JSON")

@@ -1,0 +1,33 @@
+"""Mesh files, read by the compiled module, which is imported when the first one is met."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from accuray.scene.paths import display_path
+
+
+def read_obj(path: Path) -> dict[str, Any]:
+    """Wavefront OBJ: arrays as ``accuray.scene.meshes.MeshReader`` says."""
+    from accuray._core import mesh
+
+    return _arrays(mesh.read_obj(display_path(path)))
+
+
+def read_ply(path: Path) -> dict[str, Any]:
+    """Stanford PLY, ASCII or binary: arrays as ``accuray.scene.meshes.MeshReader`` says."""
+    from accuray._core import mesh
+
+    return _arrays(mesh.read_ply(display_path(path)))
+
+
+def _arrays(mesh: Any) -> dict[str, Any]:
+    """The reader's arrays under the names of the shape parameters."""
+    return {
+        "positions": mesh.positions,
+        "faces": mesh.indices,
+        "normals": mesh.normals,
+        "uvs": mesh.uvs,
+        "report": mesh.report,
+    }

@@ -1,0 +1,92 @@
+"""The identity of a scene: SHA-256 of its canonical description.
+
+It covers every resolved value that changes a sample, so two scenes with the same identity have the same samples:
+units and defaults are applied, floats are written in hexadecimal, arrays and files count by content. Names of
+objects are part of it, because objects are lowered in the order of their names. Not part of it: samples per
+pixel, seed, exposure (except through ``film.unit``), white balance, file names, spelling, order, comments.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from accuray.scene.schema import Schema, Type
+from accuray.scene.spectrum import Spectrum
+
+if TYPE_CHECKING:
+    from accuray.scene.scene import Scene
+
+DISPLAY_ONLY = {"film": ("exposure", "white_balance"), "render": ("spp", "seed")}
+_FIELDS_OF_FORM = {
+    "constant": ("value",),
+    "rgb": ("rgb", "white"),
+    "table": ("wavelengths", "values", "extrapolate"),
+    "blackbody": ("kelvin",),
+    "sellmeier": ("A0", "B", "C"),
+    "cauchy": ("A0", "B"),
+}
+
+
+def scene_identity(scene: Scene, schema: Schema) -> str:
+    """64 hexadecimal digits."""
+    text = json.dumps(canonical(scene, schema), sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+    return hashlib.sha256(text.encode("ascii")).hexdigest()
+
+
+def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
+    """The canonical description: nested dicts of texts, integers and truth values."""
+    shapes, lights = schema.family("shape").types, schema.family("light").types
+    return {
+        "sampling_version": schema.sampling_version,
+        "film": _table("film", scene.film, schema.family("film").header),
+        "render": _table("render", scene.render, schema.family("render").header),
+        "filter": _object(scene.filter, schema.family("filter").types),
+        "camera": _object(scene.camera, schema.family("camera").types),
+        "integrator": _object(scene.integrator, schema.family("integrator").types),
+        "materials": {name: _object(item, schema.material_types()) for name, item in scene.materials.items()},
+        "lights": {name: _object(item, lights) for name, item in scene.lights.items()},
+        "shapes": {name: _object(item, shapes) for name, item in scene.shapes.items()},
+    }
+
+
+def _table(section: str, values: dict[str, Any], type_: Type) -> dict[str, Any]:
+    hidden = DISPLAY_ONLY.get(section, ())
+    return {key: item for key, item in _params(values, type_).items() if key not in hidden}
+
+
+def _object(values: dict[str, Any], types: Mapping[str, Type]) -> dict[str, Any]:
+    return {"type": values["type"], **_params(values, types[values["type"]])}
+
+
+def _params(values: dict[str, Any], type_: Type) -> dict[str, Any]:
+    """Canonical parameters, without the names that stand for contents which are described as well."""
+    described: dict[str, Any] = {}
+    for param in type_.params:
+        others = [p for group in type_.sets().get(param.set_name, {}).values() for p in group if p.group != param.group]
+        stands_for_others = param.kind in ("file", "text") and any(values[other.name] is not None for other in others)
+        described[param.name] = None if stands_for_others else _value(values[param.name])
+    return described
+
+
+def _value(value: Any) -> Any:
+    if value is None or isinstance(value, (bool, int, str)):
+        return value
+    if isinstance(value, float):
+        return value.hex()
+    if isinstance(value, (tuple, list)):
+        return [_value(item) for item in value]
+    if isinstance(value, Spectrum):
+        fields = {key: _value(getattr(value, key)) for key in _FIELDS_OF_FORM[value.form]}
+        return {"form": value.form, "scale": value.scale.hex(), **fields}
+    if isinstance(value, Path):
+        return {"sha256": _file_hash(value)}
+    return {"dtype": value.dtype.str, "shape": list(value.shape), "sha256": hashlib.sha256(value).hexdigest()}
+
+
+def _file_hash(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,212 @@
+"""JSON Schema (draft 2020-12) of scene files, for editors, made from the parameter tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from accuray import data
+from accuray.scene import schema as schemas
+from accuray.scene.kinds import vector_length, vocabulary
+from accuray.scene.scene import FORMAT_VERSION
+from accuray.scene.schema import Family, Param, Type
+from accuray.scene.spectra import ROLES_OF_FORM
+from accuray.scene.units import LENGTH_UNITS, describe
+
+Node = dict[str, Any]
+
+_NUMBER: Node = {"type": "number"}
+_NUMBERS: Node = {"type": "array", "items": _NUMBER}
+_QUANTITY: Node = {"type": ["number", "string"]}
+_VECTOR: Node = {"type": "array", "items": _QUANTITY, "minItems": 3, "maxItems": 3}
+
+
+def json_schema() -> Node:
+    """The schema of a whole scene file, as plain dicts and lists."""
+    schema = schemas.current()
+    sections: Node = {
+        "accuray": {"const": FORMAT_VERSION, "description": "Version of the scene format."},
+        "length_unit": {
+            "enum": list(LENGTH_UNITS),
+            "default": "m",
+            "description": "Unit of bare lengths in this file.",
+        },
+        "include": {"type": "array", "items": {"type": "string"}, "description": "Files merged below this one."},
+        "render": _table(schema.family("render").header),
+        "film": _film(schema.family("film"), schema.family("filter")),
+        "camera": _one_of(schema.family("camera").types),
+        "integrator": _one_of(schema.family("integrator").types),
+        "spectra": _named({"$ref": "#/$defs/spectrum"}),
+        "materials": _named(_one_of(schema.material_types())),
+        "lights": _named(_one_of(schema.family("light").types)),
+        "shapes": _named(_one_of(schema.family("shape").types)),
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "AccuRay scene",
+        "type": "object",
+        "properties": sections,
+        "required": ["accuray"],
+        "additionalProperties": False,
+        "$defs": {"spectrum": _spectrum(), "transform": _transform()},
+    }
+
+
+def _named(item: Node) -> Node:
+    return {"type": "object", "additionalProperties": item}
+
+
+def _film(film: Family, filters: Family) -> Node:
+    node = _table(film.header)
+    node["properties"]["filter"] = _one_of(filters.types)
+    return node
+
+
+def _one_of(types: dict[str, Type]) -> Node:
+    return {"type": "object", "required": ["type"], "oneOf": [_table(type_, tagged=True) for type_ in types.values()]}
+
+
+def _table(type_: Type, *, tagged: bool = False) -> Node:
+    properties: Node = {"type": {"const": type_.name}} if tagged else {}
+    properties.update({param.name: _param(param) for param in type_.params})
+    node: Node = {"type": "object", "properties": properties, "additionalProperties": False}
+    if type_.doc:
+        node["description"] = type_.doc
+    required = ["type"] if tagged else []
+    required += [param.name for param in type_.params if param.required]
+    if required:
+        node["required"] = required
+    sets = [_exactly_one(alternatives) for alternatives in type_.sets().values()]
+    if sets:
+        node["allOf"] = sets
+    return node
+
+
+def _exactly_one(alternatives: dict[str, list[Param]]) -> Node:
+    """One alternative of a set is given whole and the others not at all; none, if one of them has defaults."""
+    names = {name: [param.name for param in group] for name, group in alternatives.items()}
+    options = []
+    for name, group in alternatives.items():
+        others = [other for key, members in names.items() if key != name for other in members]
+        needed = [param.name for param in group if param.default is None]
+        option: Node = {"not": {"anyOf": [{"required": [other]} for other in others]}}
+        if needed:
+            option["required"] = needed
+        options.append(option)
+    return {"anyOf": options}
+
+
+def _param(param: Param) -> Node:
+    node = dict(_KINDS[param.kind](param))
+    description = param.doc
+    if param.unit and param.unit != "1":
+        description += f" In {param.unit}." if param.unit != "m" else " A length."
+    node["description"] = description
+    if param.default is not None:
+        node["default"] = list(param.default) if isinstance(param.default, tuple) else param.default
+    return node
+
+
+def _ranged(param: Param, node: Node) -> Node:
+    """Adds the limits, which hold for bare numbers in the documented unit (not for lengths: see length_unit)."""
+    if param.unit != "m":
+        if param.min is not None:
+            node["minimum"] = param.min
+        if param.max is not None:
+            node["maximum"] = param.max
+    return node
+
+
+def _float(param: Param) -> Node:
+    if param.unit in ("", "1"):
+        return _ranged(param, {"type": "number"})
+    return _ranged(
+        param, {"type": ["number", "string"], "markdownDescription": f"{param.doc} Takes {describe(param.unit)}."}
+    )
+
+
+def _text(param: Param) -> Node:
+    names = vocabulary(param)
+    return {"enum": names()} if names is not None else {"type": "string"}
+
+
+def _vec(param: Param) -> Node:
+    length = vector_length(param)
+    return {"type": "array", "items": _QUANTITY, "minItems": length, "maxItems": length}
+
+
+def _array(param: Param) -> Node:
+    if param.role == "faces":
+        indices = {"type": "array", "items": {"type": "integer", "minimum": 0}, "minItems": 3}
+        return {"type": "array", "items": indices}
+    return {"type": "array", "items": _NUMBERS}
+
+
+def _reference(param: Param) -> Node:
+    name: Node = {"type": "string"}
+    return {"anyOf": [name, {"type": "array", "items": name, "minItems": 1}]} if param.role == "shape" else name
+
+
+_KINDS: dict[str, Callable[[Param], Node]] = {
+    "bool": lambda _: {"type": "boolean"},
+    "int": lambda param: _ranged(param, {"type": "integer"}),
+    "float": _float,
+    "vec": _vec,
+    "enum": lambda param: {"enum": list(param.choices)},
+    "text": _text,
+    "file": lambda _: {"type": "string"},
+    "transform": lambda _: {"$ref": "#/$defs/transform"},
+    "array": _array,
+    "reference": _reference,
+    "spectrum": lambda _: {"$ref": "#/$defs/spectrum"},
+}
+
+
+def _spectrum() -> Node:
+    forms: Node = {
+        "value": _NUMBER,
+        "rgb": {"type": "array", "items": _NUMBER, "minItems": 3, "maxItems": 3},
+        "file": {"type": "string", "description": "CSV file: wavelengths in nm, then columns of values."},
+        "wavelengths": {**_NUMBERS, "minItems": 2, "description": "In nm, rising."},
+        "blackbody": {**_QUANTITY, "description": "Temperature in K."},
+        "illuminant": {"enum": list(data.illuminants())},
+        "sellmeier": {
+            "type": "object",
+            "properties": {"A0": _NUMBER, "B": _NUMBERS, "C": _NUMBERS},
+            "required": ["B", "C"],
+            "additionalProperties": False,
+        },
+        "cauchy": {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2},
+    }
+    modifiers: Node = {
+        "column": {"type": "string"},
+        "values": _NUMBERS,
+        "scale": {"type": "number", "minimum": 0},
+        "extrapolate": {"enum": ["hold", "zero"]},
+        "normalize": {"type": "boolean", "description": "Scale to Y = 1 (emission)."},
+        "luminance": {**_QUANTITY, "description": "Scale to this luminance, cd/m^2 (emission)."},
+    }
+    table = {
+        "type": "object",
+        "properties": {**forms, **modifiers},
+        "additionalProperties": False,
+        "oneOf": [{"required": [form]} for form in ROLES_OF_FORM],
+        "dependentRequired": {"column": ["file"], "values": ["wavelengths"], "wavelengths": ["values"]},
+    }
+    names = {"type": "string", "description": "A name in [spectra], an illuminant, a glass, or a temperature."}
+    return {"anyOf": [_NUMBER, forms["rgb"], names, table]}
+
+
+def _transform() -> Node:
+    rotation = {
+        "type": "object",
+        "properties": {"axis": _VECTOR, "angle": _QUANTITY},
+        "required": ["axis", "angle"],
+        "additionalProperties": False,
+    }
+    step = {
+        "type": "object",
+        "properties": {"translate": _VECTOR, "rotate": rotation, "scale": _NUMBER, "matrix": {"type": "array"}},
+        "additionalProperties": False,
+    }
+    return {"anyOf": [step, {"type": "array", "items": step, "minItems": 1}]}

@@ -1,0 +1,136 @@
+"""One resolver per parameter kind: from what the scene says to the canonical value.
+
+Canonical values: bool, int, float (metres, radians, ...), tuple of floats (vec), str (enum, text, reference),
+list of str (references to shapes), float64 4x4 array (transform), float32 and uint32 arrays, Spectrum, Path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from accuray.scene.arrays import parse_array
+from accuray.scene.errors import Where
+from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
+from accuray.scene.schema import Param
+from accuray.scene.scope import SECTION_OF, Scope
+from accuray.scene.spectra import metal_names, parse_spectrum
+from accuray.scene.transforms import parse_transform
+
+VOCABULARIES: dict[str, Callable[[], list[str]]] = {"metal": metal_names}
+"""Text parameters whose role (or name) stands here take a name out of the data that come with the renderer."""
+
+ABSOLUTE = "absolute"
+"""Role of a length whose bare numbers are metres whatever the file's length_unit says (a lens in a model in km)."""
+
+
+def resolve_value(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    """The canonical value of a parameter that the scene gives. Raises SceneError."""
+    return _RESOLVERS[param.kind](param, value, where, scope)
+
+
+def vocabulary(param: Param) -> Callable[[], list[str]] | None:
+    """The names that a text parameter may take, None if it is free text."""
+    return VOCABULARIES.get(param.role or param.name) if param.kind == "text" else None
+
+
+def vector_length(param: Param) -> int:
+    """Components of a vec parameter: those of its default, else 3."""
+    return len(param.default) if param.default is not None else 3
+
+
+def _bool(_param: Param, value: Any, where: Where, _scope: Scope) -> bool:
+    if not isinstance(value, bool):
+        raise where.error("is not a truth value", value=value, allowed="true or false")
+    return value
+
+
+def _int(param: Param, value: Any, where: Where, _scope: Scope) -> int:
+    allowed = range_text(param) or "a whole number"
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise where.error("is not a whole number", value=value, allowed=allowed)
+    number = value.__index__()
+    if not in_range(param, number):
+        raise where.error("is out of range", value=number, allowed=allowed)
+    return int(number)
+
+
+def _float(param: Param, value: Any, where: Where, _scope: Scope) -> float:
+    return quantity(param, value, where, length_unit="m" if param.role == ABSOLUTE else None)
+
+
+def _vec(param: Param, value: Any, where: Where, _scope: Scope) -> tuple[float, ...]:
+    length = vector_length(param)
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if not isinstance(value, (list, tuple)) or len(value) != length:
+        raise where.error("is not a vector", value=value, allowed=f"a list of {length} numbers")
+    return tuple(quantity(param, item, where.child(index)) for index, item in enumerate(value))
+
+
+def _enum(param: Param, value: Any, where: Where, _scope: Scope) -> str:
+    return choice(param, value, where)
+
+
+def _text(param: Param, value: Any, where: Where, _scope: Scope) -> str:
+    text = text_value(value, where)
+    names = vocabulary(param)
+    if names is not None and text not in names():
+        raise where.unknown(text, param.role or param.name, names())
+    return text
+
+
+def _file(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    return scope.files.resolve(value, where, param.choices)
+
+
+def _transform(_param: Param, value: Any, where: Where, _scope: Scope) -> Any:
+    return parse_transform(value, where)
+
+
+def _array(param: Param, value: Any, where: Where, _scope: Scope) -> Any:
+    return parse_array(param, value, where)
+
+
+def _reference(param: Param, value: Any, where: Where, scope: Scope) -> str | list[str]:
+    if param.role != "shape":
+        return _referred(param, value, where, scope)
+    names = value if isinstance(value, (list, tuple)) else [value]
+    if not names:
+        raise where.error("names nothing", value=value, allowed="at least one shape")
+    if isinstance(value, str):
+        return [_referred(param, value, where, scope)]
+    return [_referred(param, name, where.child(index), scope) for index, name in enumerate(names)]
+
+
+def _referred(param: Param, name: Any, where: Where, scope: Scope) -> str:
+    """A name that exists in the section of the parameter's family; says so if another family has it."""
+    if not isinstance(name, str):
+        raise where.error("is not a name", value=name, allowed=f"the name of a {param.role}")
+    section = SECTION_OF[param.role]
+    known = scope.names(section)
+    if name in known:
+        return name
+    for family, other in SECTION_OF.items():
+        if family != param.role and name in scope.names(other):
+            raise where.error(f"is a {family}, not a {param.role}", value=name, allowed=", ".join(known) or "none")
+    raise where.unknown(name, param.role, known)
+
+
+def _spectrum(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    return parse_spectrum(param, value, where, scope)
+
+
+_RESOLVERS: dict[str, Callable[[Param, Any, Where, Scope], Any]] = {
+    "bool": _bool,
+    "int": _int,
+    "float": _float,
+    "vec": _vec,
+    "enum": _enum,
+    "text": _text,
+    "file": _file,
+    "transform": _transform,
+    "array": _array,
+    "reference": _reference,
+    "spectrum": _spectrum,
+}

@@ -1,0 +1,143 @@
+"""The parameter tables that the kernels' headers define, as Python objects.
+
+Every type (BSDF, light, shape, camera, ...) describes its parameters in its C++ header; the compiled module
+returns them as plain dicts. Validation, documentation and the JSON Schema read only these tables, so a type
+that is added in C++ needs no line of Python.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Param:
+    """One parameter. ``min``, ``max`` and ``default`` are in the documented ``unit``."""
+
+    name: str
+    kind: str
+    default: Any = None
+    required: bool = False
+    min: float | None = None
+    max: float | None = None
+    unit: str = ""
+    choices: tuple[str, ...] = ()
+    role: str = ""
+    group: str = ""
+    texturable: bool = False
+    animatable: bool = False
+    doc: str = ""
+
+    @property
+    def set_name(self) -> str:
+        """Name of the "exactly one of" set, "" if the parameter stands alone."""
+        return self.group.partition(":")[0]
+
+    @property
+    def alternative(self) -> str:
+        """Name of the alternative inside the set."""
+        return self.group.partition(":")[2]
+
+
+@dataclass(frozen=True)
+class Type:
+    """A type of a family: ``params`` hold its own parameters and the common ones of its family."""
+
+    name: str
+    doc: str
+    params: tuple[Param, ...]
+    keeps: tuple[str, ...] = ()
+
+    def sets(self) -> dict[str, dict[str, list[Param]]]:
+        """The "exactly one of" sets: set name -> alternative -> its parameters."""
+        found: dict[str, dict[str, list[Param]]] = {}
+        for param in self.params:
+            if param.group:
+                found.setdefault(param.set_name, {}).setdefault(param.alternative, []).append(param)
+        return found
+
+
+@dataclass(frozen=True)
+class Family:
+    """A family of types. One without types (film, render) is a single table of common parameters."""
+
+    name: str
+    common: tuple[Param, ...]
+    types: dict[str, Type]
+    default: str
+
+    @property
+    def header(self) -> Type:
+        """The common parameters as a type of their own."""
+        return Type(self.name, "", self.common)
+
+
+@dataclass(frozen=True)
+class Schema:
+    """All families; ``sampling_version`` changes whenever the same scene gives other samples."""
+
+    sampling_version: int
+    families: dict[str, Family]
+
+    def family(self, name: str) -> Family:
+        """A family by name; an unknown one is a bug of ours."""
+        return self.families[name]
+
+    def material_types(self) -> dict[str, Type]:
+        """BSDFs with the header that all materials share."""
+        header = self.family("material").common
+        bsdfs = self.family("bsdf").types
+        return {name: Type(name, bsdf.doc, (*bsdf.params, *header), bsdf.keeps) for name, bsdf in bsdfs.items()}
+
+
+def parse(tables: dict[str, Any]) -> Schema:
+    """Schema objects from the plain tables."""
+    families = {name: _family(name, family) for name, family in tables["families"].items()}
+    return Schema(int(tables["sampling_version"]), families)
+
+
+def _family(name: str, family: dict[str, Any]) -> Family:
+    common = tuple(_param(entry) for entry in family.get("common", ()))
+    types = {
+        entry["name"]: Type(
+            entry["name"],
+            entry.get("doc", ""),
+            (*(_param(param) for param in entry["params"]), *common),
+            tuple(entry.get("keeps", ())),
+        )
+        for entry in family.get("types", ())
+    }
+    return Family(name, common, types, family.get("default") or next(iter(types), ""))
+
+
+def _param(entry: dict[str, Any]) -> Param:
+    known = {field.name for field in fields(Param)}
+    values = {key: value for key, value in entry.items() if key in known}
+    values["choices"] = tuple(entry.get("choices") or ())
+    return Param(**values)
+
+
+def load_tables() -> dict[str, Any]:
+    """The plain tables of the compiled module."""
+    from accuray._core import schema
+
+    tables: dict[str, Any] = schema.tables()
+    return tables
+
+
+_current: Schema | None = None
+
+
+def current() -> Schema:
+    """The schema in use: that of the compiled module unless ``use`` replaced it."""
+    global _current
+    if _current is None:
+        _current = parse(load_tables())
+    return _current
+
+
+def use(tables: dict[str, Any] | None) -> None:
+    """Replace the schema by these plain tables; None goes back to the compiled module's."""
+    global _current
+    _current = None if tables is None else parse(tables)

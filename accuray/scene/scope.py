@@ -1,0 +1,33 @@
+"""What the validators of single values need to know about the whole scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from accuray.scene.errors import Document
+from accuray.scene.paths import Confinement
+from accuray.scene.schema import Schema
+
+SECTION_OF = {"material": "materials", "light": "lights", "shape": "shapes"}
+"""Families whose objects have names, and the section that holds them."""
+
+
+@dataclass
+class Scope:
+    """The document under validation with its schema and folders.
+
+    ``defaults`` holds resolved defaults by the identity of their parameter; ``mesh_reports`` collects what the
+    readers of mesh files counted, by the name of the shape.
+    """
+
+    document: Document
+    schema: Schema
+    files: Confinement
+    defaults: dict[int, Any] = field(default_factory=dict)
+    mesh_reports: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    def names(self, section: str) -> list[str]:
+        """Names defined in a section ("materials", "spectra", ...), in the order of the file."""
+        table = self.document.data.get(section)
+        return list(table) if isinstance(table, dict) else []

@@ -1,0 +1,41 @@
+"""What the shapes of a scene must fulfil together, beyond the table of each type."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from accuray.scene.errors import Where
+from accuray.scene.schema import Param, Schema, Type
+
+Shapes = dict[str, dict[str, Any]]
+
+
+def check_shapes(shapes: Shapes, schema: Schema, where: Where) -> None:
+    """Every shape has a material or is made of other shapes; those are prototypes, and one level deep.
+
+    Raises SceneError.
+    """
+    types = schema.family("shape").types
+    for name, shape in shapes.items():
+        links = _links(types[shape["type"]])
+        if shape["material"] is None and not links:
+            raise where.child(name).error("has no material", allowed='material = "NAME" of a table in [materials]')
+        for param in links:
+            for target in shape[param.name] or ():
+                _check_target(target, shapes[target], types, where.child(name, param.name))
+
+
+def _links(type_: Type) -> list[Param]:
+    """Parameters that refer to other shapes."""
+    return [param for param in type_.params if param.kind == "reference" and param.role == "shape"]
+
+
+def _check_target(name: str, target: dict[str, Any], types: dict[str, Type], where: Where) -> None:
+    if _links(types[target["type"]]):
+        raise where.error(
+            f"has the type {target['type']}, which is made of other shapes itself",
+            value=name,
+            allowed="one level: shapes of other types",
+        )
+    if not target["prototype"]:
+        raise where.error("is not a prototype", value=name, allowed="shapes with `prototype = true`")

@@ -1,0 +1,85 @@
+"""Drives Mitsuba 3. ``variant`` and ``sampler`` of the job are Mitsuba's names."""
+
+import importlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from common import Image, drive
+
+VISIBLE = (360.0, 830.0)
+
+
+class Mitsuba:
+    """Mitsuba with the scene loaded; ``render`` waits for the pixels."""
+
+    def __init__(self, job: dict[str, Any], scene: dict[str, Any]) -> None:
+        self.drjit: Any = importlib.import_module("drjit")
+        self.mitsuba: Any = importlib.import_module("mitsuba")
+        self.mitsuba.set_variant(job["variant"])
+        self.drjit.set_thread_count(job["threads"])
+        self.spectral = "spectral" in job["variant"]
+        self.version = f"{self.mitsuba.__version__} {job['variant']} {job['sampler']}"
+        self.scene = self.mitsuba.load_dict(self._description(job, scene))
+        self.pixels: Any = None
+
+    def render(self, spp: int, seed: int) -> float:
+        self.pixels = self.mitsuba.render(self.scene, spp=spp, seed=seed)
+        self.drjit.eval(self.pixels)
+        self.drjit.sync_thread()
+        return float(self.scene.sensors()[0].sampler().sample_count())
+
+    def image(self) -> Image:
+        return np.array(self.pixels, dtype=np.float32)[:, :, :3]
+
+    def write(self, path: str) -> None:
+        self.mitsuba.util.write_bitmap(path, self.pixels, write_async=False)
+
+    def _description(self, job: dict[str, Any], scene: dict[str, Any]) -> dict[str, Any]:
+        materials = {
+            name: {"type": "diffuse", "reflectance": self._spectrum(spectrum, hold=True)}
+            for name, spectrum in scene["reflectances"].items()
+        }
+        shapes = {}
+        for mesh in scene["meshes"]:
+            shape: dict[str, Any] = {
+                "type": "ply",
+                "filename": str(Path(job["scene"]) / mesh["file"]),
+                "face_normals": not mesh["smooth"],
+                "bsdf": materials[mesh["material"]],
+            }
+            if mesh["material"] == scene["emitter"]:
+                shape["emitter"] = {"type": "area", "radiance": self._spectrum(scene["emission"], hold=False)}
+            shapes[mesh["name"]] = shape
+        integrator = {"type": "path", "max_depth": -1, "rr_depth": scene["roulette_start"]}
+        return {"type": "scene", "integrator": integrator, "sensor": self._sensor(job, scene), **shapes}
+
+    def _sensor(self, job: dict[str, Any], scene: dict[str, Any]) -> dict[str, Any]:
+        camera = scene["camera"]
+        to_world = self.mitsuba.ScalarTransform4f().look_at(
+            origin=camera["position"], target=camera["look_at"], up=camera["up"]
+        )
+        film = {
+            "type": "hdrfilm",
+            "width": scene["width"],
+            "height": scene["height"],
+            "pixel_format": "rgb",
+            "component_format": "float32",
+            "rfilter": {"type": "box"},
+        }
+        sampler = {"type": job["sampler"], "sample_count": job["passes"][0]["spp"]}
+        field = {"fov": camera["fov"], "fov_axis": "x", "near_clip": 0.001, "far_clip": 100.0}
+        return {"type": "perspective", "to_world": to_world, "film": film, "sampler": sampler, **field}
+
+    def _spectrum(self, spectrum: dict[str, Any], hold: bool) -> dict[str, Any]:
+        """The measured table, in which ``hold`` repeats the end values (Mitsuba has 0 outside), or its RGB."""
+        if not self.spectral:
+            return {"type": "rgb", "value": list(spectrum["rgb"])}
+        pairs = list(zip(spectrum["wavelengths"], spectrum["values"], strict=True))
+        if hold:
+            pairs = [(VISIBLE[0], pairs[0][1]), *pairs, (VISIBLE[1], pairs[-1][1])]
+        return {"type": "spectrum", "value": pairs}
+
+
+if __name__ == "__main__":
+    drive(Mitsuba)

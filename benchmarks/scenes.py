@@ -1,0 +1,178 @@
+"""The benchmark scenes, described once and written for every renderer: PLY meshes, ``scene.json``, ``scene.toml``.
+
+``scene.json`` is the neutral form that the peers' drivers read: camera, materials with a measured spectrum and the
+linear Rec.709 colour of it, meshes. ``scene.toml`` is AccuRay's own form of the same scene.
+"""
+
+import argparse
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmarks import settings
+from benchmarks.geometry import Mesh, bumpy_sphere, frame_around, quad_mesh, write_ply
+
+DATA = Path(__file__).parent / "data"
+MILLIMETRE = 0.001
+INLINE_TRIANGLES = 1000
+
+SCENES = ("cornell", "million", "room")
+"""The Cornell box; the box with a million-triangle sphere in place of the blocks; the box with nothing in it."""
+
+RGB = {
+    "white": (0.738376, 0.735961, 0.738503),
+    "green": (0.068429, 0.398447, 0.086546),
+    "red": (0.493966, 0.048867, 0.051152),
+    "lamp": (0.78, 0.78, 0.78),
+    "emission": (20.720144, 10.854298, 2.770084),
+}
+"""Linear Rec.709, CIE 1931 observer: reflectances under D65; the lamp's radiance with Y = integral(L ybar) /
+integral(ybar), the lamp being dark outside 400-700 nm."""
+
+LAMP_REFLECTANCE = 0.78
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Samples at wavelengths in nm, linear between them, and the RGB that stands for it in RGB renderers."""
+
+    wavelengths: tuple[float, ...]
+    values: tuple[float, ...]
+    rgb: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Meshes in metres and what they are made of. Reflectances hold their end values; the emission is 0 outside."""
+
+    name: str
+    meshes: tuple[Mesh, ...]
+    reflectances: dict[str, Spectrum]
+    emission: Spectrum
+    emitter: str
+    camera: dict[str, Any]
+
+
+def build(name: str) -> Scene:
+    """One of ``SCENES``."""
+    if name not in SCENES:
+        raise ValueError(f"unknown scene {name!r}: allowed {', '.join(SCENES)}")
+    page = json.loads((DATA / "cornell_box_geometry.json").read_text())
+    surfaces = page["surfaces"]
+    ceiling = surfaces["ceiling"]
+    white = [quad for part in ("floor", "back_wall") for quad in surfaces[part]["quads"]]
+    white += frame_around(ceiling["quads"][0], ceiling["hole_for_light"])
+    if name == "cornell":
+        white += surfaces["short_block"]["quads"] + surfaces["tall_block"]["quads"]
+    meshes = [
+        quad_mesh("white", "white", white, MILLIMETRE),
+        quad_mesh("red", "red", surfaces["left_wall"]["quads"], MILLIMETRE),
+        quad_mesh("green", "green", surfaces["right_wall"]["quads"], MILLIMETRE),
+        quad_mesh("lamp", "lamp", surfaces["light"]["quads"], MILLIMETRE),
+    ]
+    if name == "million":
+        size = (settings.MILLION_SEGMENTS, settings.MILLION_RINGS)
+        meshes.append(bumpy_sphere("sphere", "white", (0.278, 0.2, 0.28), 0.16, *size))
+    columns = _read_columns(DATA / "cornell_box_reflectance.csv")
+    paints = {
+        paint: Spectrum(columns["wavelength_nm"], columns[paint], RGB[paint]) for paint in ("white", "red", "green")
+    }
+    paints["lamp"] = Spectrum((400.0, 700.0), (LAMP_REFLECTANCE, LAMP_REFLECTANCE), RGB["lamp"])
+    light = _read_columns(DATA / "cornell_box_light.csv")
+    emission = Spectrum(light["wavelength_nm"], light["relative_radiance"], RGB["emission"])
+    return Scene(name, tuple(meshes), paints, emission, "lamp", _camera(page["camera"]))
+
+
+def _camera(camera: dict[str, Any]) -> dict[str, Any]:
+    """Eye, point looked at, up, and the full field of view of the square film in degrees."""
+    eye = [value * MILLIMETRE for value in camera["position"]]
+    target = [a + b for a, b in zip(eye, camera["direction"], strict=True)]
+    return {"position": eye, "look_at": target, "up": camera["up"], "fov": camera["derived_full_fov_deg"]}
+
+
+def _read_columns(path: Path) -> dict[str, tuple[float, ...]]:
+    """Columns of a CSV file whose lines starting with ``#`` are remarks and whose first other line names them."""
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return {name: tuple(float(row[name]) for row in rows) for name in rows[0]}
+
+
+def write(scene: Scene, folder: Path, size: int) -> Path:
+    """Write the scene for a ``size`` x ``size`` image into ``folder`` (made if missing); return the folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for mesh in scene.meshes:
+        write_ply(mesh, folder / f"{mesh.name}.ply")
+    (folder / "scene.json").write_text(json.dumps(_neutral(scene, size), indent=1))
+    (folder / "scene.toml").write_text(_toml(scene, size))
+    return folder
+
+
+def _neutral(scene: Scene, size: int) -> dict[str, Any]:
+    """The content of ``scene.json``."""
+    return {
+        "name": scene.name,
+        "width": size,
+        "height": size,
+        "camera": scene.camera,
+        "threads": settings.THREADS,
+        "roulette_start": settings.ROULETTE_START,
+        "finite_depth": settings.FINITE_DEPTH,
+        "reflectances": {name: vars(spectrum) for name, spectrum in scene.reflectances.items()},
+        "emission": vars(scene.emission),
+        "emitter": scene.emitter,
+        "meshes": [
+            {
+                "name": mesh.name,
+                "file": f"{mesh.name}.ply",
+                "material": mesh.material,
+                "smooth": mesh.normals is not None,
+                "triangles": len(mesh.triangles),
+            }
+            for mesh in scene.meshes
+        ],
+    }
+
+
+def _toml(scene: Scene, size: int) -> str:
+    """AccuRay's scene file; small meshes are inline, large ones in their PLY file."""
+    lines = ["accuray = 1", 'length_unit = "m"', "", "[film]", f"width = {size}", f"height = {size}", ""]
+    lines += ["[film.filter]", 'type = "box"', "radius = 0.5", "", "[camera]", 'type = "perspective"']
+    lines += [f"{key} = {value}" for key, value in scene.camera.items()]
+    lines += ["", "[integrator]", 'type = "path"', "max_depth = -1", f"roulette_depth = {settings.ROULETTE_START}"]
+    for name, spectrum in scene.reflectances.items():
+        lines += ["", f"[materials.{name}]", 'type = "diffuse"', f"reflectance = {_inline(spectrum)}"]
+        if name == scene.emitter:
+            lines.append(f"emission = {_inline(scene.emission)}")
+    for mesh in scene.meshes:
+        lines += ["", f"[shapes.{mesh.name}]", 'type = "mesh"', f'material = "{mesh.material}"']
+        if len(mesh.triangles) > INLINE_TRIANGLES:
+            lines.append(f'file = "{mesh.name}.ply"')
+        else:
+            lines.append(f"positions = {_rows(mesh.positions.tolist())}")
+            lines.append(f"faces = {_rows(mesh.triangles.tolist())}")
+    return "\n".join(lines) + "\n"
+
+
+def _inline(spectrum: Spectrum) -> str:
+    return f"{{ wavelengths = {list(spectrum.wavelengths)}, values = {list(spectrum.values)} }}"
+
+
+def _rows(rows: Sequence[Sequence[float]]) -> str:
+    return "[\n" + "".join(f"  {row},\n" for row in rows) + "]"
+
+
+def main() -> None:
+    """Write one scene: ``python -m benchmarks.scenes cornell FOLDER --size 512``."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("scene", choices=SCENES)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--size", type=int, default=settings.SIZE)
+    arguments = parser.parse_args()
+    print(write(build(arguments.scene), arguments.folder, arguments.size))
+
+
+if __name__ == "__main__":
+    main()

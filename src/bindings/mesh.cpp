@@ -1,0 +1,89 @@
+// The mesh readers.
+#include "mesh/mesh.h"
+
+#include "bindings/bindings.h"
+#include "mesh/checks.h"
+#include "mesh/error.h"
+#include "mesh/normals.h"
+#include "mesh/obj.h"
+#include "mesh/ply.h"
+
+namespace accuray::bindings {
+
+namespace {
+
+// A mesh as numpy arrays that own the reader's memory.
+struct PyMesh {
+  nb::object positions, indices, normals, uvs;
+  nb::dict report;
+};
+
+nb::dict describe(const mesh::MeshReport& report) {
+  nb::dict d;
+  d["triangles_read"] = report.triangles_read;
+  d["nonfinite_triangles"] = report.nonfinite_triangles;
+  d["degenerate_triangles"] = report.degenerate_triangles;
+  d["nonfinite_vertices"] = report.nonfinite_vertices;
+  d["generated_normals"] = report.generated_normals;
+  d["missing_uvs"] = report.missing_uvs;
+  d["unknown"] = report.unknown;
+  d["first_unknown"] = report.first_unknown;
+  return d;
+}
+
+PyMesh to_python(mesh::MeshData data) {
+  PyMesh result{to_numpy(std::move(data.positions), 3), to_numpy(std::move(data.indices), 3), nb::none(), nb::none(),
+                describe(data.report)};
+  if (!data.normals.empty()) result.normals = to_numpy(std::move(data.normals), 3);
+  if (!data.uvs.empty()) result.uvs = to_numpy(std::move(data.uvs), 2);
+  return result;
+}
+
+template <mesh::MeshData (*Read)(const std::string&)>
+PyMesh read(const std::string& path) {
+  mesh::MeshData data;
+  {
+    const nb::gil_scoped_release release;
+    data = Read(path);
+  }
+  return to_python(std::move(data));
+}
+
+PyMesh repair(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices, const std::optional<Rows<float, 3>>& normals,
+              const std::optional<Rows<float, 2>>& uvs) {
+  mesh::MeshData data;
+  data.positions = to_vector(positions);
+  data.indices = to_vector(indices);
+  if (normals) data.normals = to_vector(*normals);
+  if (uvs) data.uvs = to_vector(*uvs);
+  mesh::require_indices_in_range(data, "<arrays>");
+  {
+    const nb::gil_scoped_release release;
+    mesh::repair(data);
+  }
+  return to_python(std::move(data));
+}
+
+nb::object smooth_normals(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices) {
+  return to_numpy(mesh::smooth_normals({positions.data(), positions.size()}, {indices.data(), indices.size()}), 3);
+}
+
+}  // namespace
+
+void bind_mesh(nb::module_& module) {
+  nb::module_ m = module.def_submodule("mesh", "Mesh readers and repairs.");
+  nb::exception<mesh::ReadError>(m, "ReadError", PyExc_ValueError);
+  nb::class_<PyMesh>(m, "Mesh")
+      .def_ro("positions", &PyMesh::positions)
+      .def_ro("indices", &PyMesh::indices)
+      .def_ro("normals", &PyMesh::normals)
+      .def_ro("uvs", &PyMesh::uvs)
+      .def_ro("report", &PyMesh::report);
+  m.def("read_obj", &read<&mesh::read_obj>, "path"_a, "Reads a Wavefront OBJ file.");
+  m.def("read_ply", &read<&mesh::read_ply>, "path"_a, "Reads a PLY file.");
+  m.def("repair", &repair, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(),
+        "Drops and counts what cannot be rendered.");
+  m.def("smooth_normals", &smooth_normals, "positions"_a, "indices"_a, "One unit normal per vertex.");
+}
+
+}  // namespace accuray::bindings

@@ -1,0 +1,116 @@
+// The parameter tables of every type of every list, as Python sees them.
+#include "bindings/bindings.h"
+#include "kernels/bsdf/list.h"
+#include "kernels/camera/list.h"
+#include "kernels/film/filter.h"
+#include "kernels/film/params.h"
+#include "kernels/geometry/shapes.h"
+#include "kernels/integrator/list.h"
+#include "kernels/light/list.h"
+
+namespace accuray::bindings {
+
+namespace {
+
+// Changes whenever a change of the code changes what a sample computes; part of a scene's identity.
+constexpr int kSamplingVersion = 1;
+
+const char* kind_name(Kind kind) {
+  constexpr const char* names[] = {"bool",      "int",   "float",     "vec",    "enum", "text", "file",
+                                   "transform", "array", "reference", "spectrum"};
+  return names[static_cast<uint32_t>(kind)];
+}
+
+nb::list words(const std::string& text) {
+  nb::list result;
+  size_t begin = 0;
+  while (begin < text.size()) {
+    const size_t end = std::min(text.find('|', begin), text.size());
+    result.append(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return result;
+}
+
+nb::dict describe(const Param& param) {
+  nb::dict d;
+  const auto bound = [](double x) { return abs(x) >= unbounded ? nb::object(nb::none()) : nb::cast(x); };
+  d["name"] = param.name;
+  d["kind"] = kind_name(param.kind);
+  d["default"] = *param.preset == '\0' ? nb::object(nb::none()) : nb::module_::import_("json").attr("loads")(param.preset);
+  d["required"] = param.required;
+  d["min"] = bound(param.low);
+  d["max"] = bound(param.high);
+  d["unit"] = param.unit;
+  d["choices"] = words(param.choices);
+  d["role"] = param.role;
+  d["group"] = param.group;
+  d["texturable"] = param.texturable;
+  d["animatable"] = param.animatable;
+  d["doc"] = param.doc;
+  return d;
+}
+
+template <class T>
+nb::list params_of() {
+  nb::list result;
+  constexpr auto params = T::params();
+  for (uint32_t i = 0; i < params.size; ++i) result.append(describe(params.items[i]));
+  return result;
+}
+
+template <class T>
+nb::list laws_of() {
+  nb::list result;
+  if constexpr (requires { T::keeps; }) {
+    if (T::keeps.exact_pdf) result.append("exact_pdf");
+    if (T::keeps.reciprocal) result.append("reciprocal");
+    if (T::keeps.energy_conserving) result.append("energy_conserving");
+    if (T::keeps.stochastic) result.append("stochastic");
+  }
+  return result;
+}
+
+template <class... Ts>
+nb::dict family(TypeList<Ts...>, nb::list common) {
+  nb::list types;
+  [[maybe_unused]] const auto add = [&]<class T>(Type<T>) {
+    nb::dict d;
+    d["name"] = T::name;
+    d["doc"] = T::doc;
+    d["params"] = params_of<T>();
+    d["keeps"] = laws_of<T>();
+    types.append(d);
+  };
+  (add(Type<Ts>{}), ...);
+  nb::dict result;
+  result["common"] = common;
+  result["types"] = types;
+  return result;
+}
+
+nb::dict tables() {
+  nb::dict families;
+  families["bsdf"] = family(Bsdfs{}, nb::list());
+  families["light"] = family(NamedLights{}, nb::list());
+  families["shape"] = family(Shapes{}, params_of<ShapeCommon>());
+  families["camera"] = family(Cameras{}, nb::list());
+  families["filter"] = family(Filters{}, nb::list());
+  families["integrator"] = family(Integrators{}, nb::list());
+  families["material"] = family(TypeList<>{}, params_of<MaterialCommon>());
+  families["film"] = family(TypeList<>{}, params_of<FilmCommon>());
+  families["render"] = family(TypeList<>{}, params_of<RenderCommon>());
+  nb::dict result;
+  result["sampling_version"] = kSamplingVersion;
+  result["families"] = families;
+  return result;
+}
+
+}  // namespace
+
+void bind_schema(nb::module_& module) {
+  nb::module_ schema = module.def_submodule("schema", "Parameter tables of all types.");
+  schema.def("tables", &tables, "Parameter tables of every family, as nested dicts and lists.");
+}
+
+}  // namespace accuray::bindings

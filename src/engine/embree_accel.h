@@ -1,0 +1,111 @@
+// The intersector of this machine: Embree over the lowered scene, whose vertex and index bytes it reads in place.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "engine/embree_shim.h"
+#include "kernels/accel/accel.h"
+
+namespace accuray {
+
+struct EmbreeError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Owns Embree's structures for one scene. The view's sections must outlive it.
+//
+// The build must not depend on the number of threads: where two triangles are met at the same distance, their order in
+// a leaf decides which one is the hit, and Embree's parallel partition orders a leaf by the number of tasks. So it
+// always builds in an arena of the same nominal size, however many cores there are.
+class EmbreeScene {
+ public:
+  explicit EmbreeScene(const SceneView& view);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  RTCScene scene() const { return scene_; }
+  uint32_t first_instance() const { return first_instance_; }
+  const SceneView& view() const { return view_; }
+  size_t bytes() const { return bytes_; }
+
+  // What a user geometry's callback finds behind its pointer.
+  struct Analytic {
+    const SceneView* view;
+    uint32_t geometry;
+  };
+
+ private:
+  RTCGeometry make_geometry(uint32_t geometry);
+  void attach(RTCScene target, uint32_t geometry, uint32_t id);
+  RTCScene prototype_scene(uint32_t first, uint32_t count);
+  void attach_instances();
+  void commit(RTCScene target);
+  void check(const char* action);
+
+  SceneView view_;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  std::vector<RTCScene> prototypes_;
+  std::vector<std::unique_ptr<Analytic>> analytic_;
+  uint32_t first_instance_;
+  size_t bytes_ = 0;
+};
+
+// What kernels see; one for each thread, because it counts.
+class EmbreeAccel {
+ public:
+  explicit EmbreeAccel(const EmbreeScene& scene) : scene_(&scene) {}
+
+  Hit closest(const Ray& ray) const {
+    alignas(16) RTCRayHit rh;
+    embree::prepare(rh);
+    load(rh.ray, ray);
+    embree::intersect(scene_->scene(), &rh);
+    ++rays_;
+    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Hit{};
+    Hit hit{rh.ray.tfar, rh.hit.u, rh.hit.v, rh.hit.primID, rh.hit.geomID, none};
+    if (rh.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
+      hit.instance = rh.hit.instID[0] - scene_->first_instance();
+      hit.geometry = scene_->view().instances[hit.instance].first + rh.hit.geomID;
+    }
+    return hit;
+  }
+
+  float transmittance(const Ray& ray) const {
+    alignas(16) RTCRay r;
+    r.tnear = 0.0f;
+    r.mask = 0xffffffffu;
+    r.id = 0;
+    r.flags = 0;
+    load(r, ray);
+    embree::occluded(scene_->scene(), &r);
+    ++rays_;
+    return r.tfar < 0.0f ? 0.0f : 1.0f;
+  }
+
+  uint64_t rays() const { return rays_; }
+
+ private:
+  static void load(RTCRay& target, const Ray& ray) {
+    target.org_x = ray.origin.x;
+    target.org_y = ray.origin.y;
+    target.org_z = ray.origin.z;
+    target.dir_x = ray.direction.x;
+    target.dir_y = ray.direction.y;
+    target.dir_z = ray.direction.z;
+    target.tfar = ray.far;
+    target.time = ray.time;
+  }
+
+  const EmbreeScene* scene_;
+  mutable uint64_t rays_ = 0;
+};
+
+static_assert(Accel<EmbreeAccel>);
+
+}  // namespace accuray

@@ -1,0 +1,40 @@
+// What every BSDF offers.
+//
+// A BSDF is a struct X of parameters, as the scene stores them, and the values XAt = X::at(scene, wavelengths) at one
+// hit. It is listed in list.h; the tests of the list check every law that X::keeps claims.
+//
+// Conventions
+//   - Directions are unit vectors that leave the surface, in the local frame whose +z is the shading normal on the
+//     front side. `wo` points to where the path came from and is given, `wi` to where light comes from.
+//   - eval(wo, wi) is f |cos(theta_i)| per lane, pdf(wo, wi) the density of wi per solid angle; both are 0 for
+//     perfectly specular (delta) lobes.
+//   - sample(wo, u_lobe, u) returns weight = f |cos(theta_i)| / pdf, or the whole weight of a delta lobe. A failed
+//     sample has weight 0.
+//   - Transmitted radiance is scaled by (eta_o / eta_i)^2, eta_o being the index on the side of wo.
+#pragma once
+
+#include "kernels/math/vec.h"
+#include "kernels/scene_view.h"
+#include "kernels/schema.h"
+
+namespace accuray {
+
+enum Lobe : uint32_t {
+  lobe_none = 0,
+  lobe_diffuse = 1,
+  lobe_specular = 2,      // delta
+  lobe_transmission = 4,
+  lobe_disperses = 8      // the direction depends on the wavelength: only the hero goes on
+};
+
+struct BsdfSample {
+  Vec3 wi;
+  Spectrum weight;
+  float pdf;          // 0 for delta lobes
+  uint32_t lobe;
+  float eta_scale;    // (eta_i / eta_o)^2 of a refraction, else 1: takes radiance scaling out of the roulette
+};
+
+inline BsdfSample no_sample() { return {{0, 0, 1}, lanes(0.0f), 0.0f, lobe_none, 1.0f}; }
+
+}  // namespace accuray

@@ -1,0 +1,62 @@
+// A perfectly smooth interface between two transparent media: exact Fresnel, Snell and total internal reflection.
+//
+// Reflection is chosen with the mean of the lanes' reflectances, which is the balance heuristic over which wavelength
+// might have been the hero (Wilkie et al. 2014, eq. 9): no lane's weight exceeds 4.
+#pragma once
+
+#include "kernels/bsdf/bsdf.h"
+#include "kernels/bsdf/fresnel.h"
+
+namespace accuray {
+
+struct DielectricAt {
+  Spectrum ior;      // index behind the surface over index before it
+  bool disperses;    // the index depends on the wavelength
+  bool hero_only;    // the other lanes carry nothing any more
+
+  static constexpr bool delta_only = true;
+
+  Spectrum eval(Vec3, Vec3) const { return lanes(0.0f); }
+  float pdf(Vec3, Vec3) const { return 0.0f; }
+
+  BsdfSample sample(Vec3 wo, float u_lobe, Vec2) const {
+    if (wo.z == 0.0f) return no_sample();
+    const float cos_o = abs(wo.z);
+    const Spectrum eta = wo.z > 0.0f ? ior : 1.0f / ior;
+    const Spectrum reflectance = fresnel_dielectric(cos_o, eta);
+    const float chance = hero_only ? reflectance[0] : 0.25f * sum(reflectance);
+    if (u_lobe < chance) {
+      return {{-wo.x, -wo.y, wo.z}, reflectance / chance, 0.0f, lobe_specular, 1.0f};
+    }
+    // Snell's law for the hero; without dispersion its direction is everyone's.
+    const float e = eta[0];
+    const float sin2_t = (1.0f - cos_o * cos_o) / (e * e);
+    if (sin2_t >= 1.0f) return no_sample();
+    const float cos_t = sqrt(1.0f - sin2_t);
+    const Vec3 wi = {-wo.x / e, -wo.y / e, wo.z > 0.0f ? -cos_t : cos_t};
+    const Spectrum weight = (1.0f - reflectance) / ((1.0f - chance) * eta * eta);
+    const uint32_t lobe = lobe_specular | lobe_transmission | (disperses ? lobe_disperses : 0u);
+    return {wi, weight, 0.0f, lobe, e * e};
+  }
+};
+
+struct Dielectric {
+  SpectrumRef ior;
+
+  static constexpr const char* name = "dielectric";
+  static constexpr const char* doc =
+      "A perfectly smooth surface of glass, water and the like: exact Fresnel reflection and refraction with dispersion.";
+  static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
+  static constexpr auto params() {
+    return param_list(Param{.name = "ior", .kind = Kind::spectrum,
+                            .doc = "Index behind the surface relative to the index before it: a number, a named glass "
+                                   "(N-BK7, SF11, water, diamond, ...), Sellmeier or Cauchy coefficients, or a table.",
+                            .preset = "1.5", .low = 0.05, .high = 20, .unit = "1", .role = "index", .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Dielectric, ior)});
+  }
+  DielectricAt at(const SceneView& scene, const Wavelengths& wl) const {
+    return {scene.spectrum(ior, wl), scene.spectra[ior.index].form != SpectrumForm::constant, wl.hero_only};
+  }
+};
+
+}  // namespace accuray

@@ -1,0 +1,144 @@
+// From a hit to a point on a surface: position with its error bound, normals, texture coordinates.
+#pragma once
+
+#include "kernels/geometry/shapes.h"
+#include "kernels/math/functions.h"
+#include "kernels/math/rounding.h"
+
+namespace accuray {
+
+// Conventions
+//   - `normal` is the geometric normal of the front side, `shading` the interpolated one on the same side of the
+//     surface; both unit, in world space.
+//   - `error` bounds the distance per axis between `point` and the true surface, and also the rounding of the
+//     intersector's plane test, so that offset_origin() by it never meets the same surface again.
+struct Surface {
+  Vec3 point;
+  Vec3 error;
+  Vec3 normal;
+  Vec3 shading;
+  Vec2 uv;
+  uint32_t material;
+  uint32_t light;       // the light that this point belongs to; none: not emissive
+};
+
+struct Triangle {
+  Vec3 p0, p1, p2;
+  uint32_t i0, i1, i2;
+};
+
+inline Vec3 load_vec3(const float* values, uint32_t index) {
+  const float* v = values + 3u * index;
+  return {v[0], v[1], v[2]};
+}
+
+inline Triangle triangle_of(const SceneView& scene, const Mesh& mesh, uint32_t primitive) {
+  const uint32_t* index = scene.at(mesh.indices) + 3u * primitive;
+  const float* positions = scene.at(mesh.positions);
+  return {load_vec3(positions, index[0]), load_vec3(positions, index[1]), load_vec3(positions, index[2]),
+          index[0], index[1], index[2]};
+}
+
+// Barycentric interpolation errs by gamma(7) times the sum of magnitudes (Pharr et al. 2023, eq. 6.33). The
+// intersector's own test errs in proportion to the triangle's distance from the ray's origin; as that origin lies on
+// some surface of comparable coordinates, its part is bounded by the vertices' magnitudes and the triangle's extent.
+inline Vec3 triangle_error(const Triangle& tri) {
+  const Vec3 a = abs(tri.p0);
+  const Vec3 b = abs(tri.p1);
+  const Vec3 c = abs(tri.p2);
+  const Vec3 m = {max(a.x, max(b.x, c.x)), max(a.y, max(b.y, c.y)), max(a.z, max(b.z, c.z))};
+  const float extent = max_component(abs(tri.p1 - tri.p0)) + max_component(abs(tri.p2 - tri.p0));
+  const float common = gamma(2) * extent;
+  return {fma(gamma(10), m.x, common), fma(gamma(10), m.y, common), fma(gamma(10), m.z, common)};
+}
+
+inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Surface& s) {
+  const Triangle tri = triangle_of(scene, mesh, hit.primitive);
+  const float w = 1.0f - hit.u - hit.v;
+  s.point = fma(w, tri.p0, fma(hit.u, tri.p1, tri.p2 * hit.v));
+  s.error = triangle_error(tri);
+  s.normal = normalize(cross(tri.p1 - tri.p0, tri.p2 - tri.p0));
+  s.shading = s.normal;
+  s.uv = {hit.u, hit.v};
+  if (mesh.normals.count != 0) {
+    const float* normals = scene.at(mesh.normals);
+    const Vec3 n = fma(w, load_vec3(normals, tri.i0),
+                       fma(hit.u, load_vec3(normals, tri.i1), load_vec3(normals, tri.i2) * hit.v));
+    const float squared = length_squared(n);
+    if (squared > 0.0f && is_finite(squared)) {
+      s.shading = n * (1.0f / sqrt(squared));
+      if (dot(s.shading, s.normal) < 0.0f) s.shading = -s.shading;
+    }
+  }
+  if (mesh.uvs.count != 0) {
+    const float* t = scene.at(mesh.uvs);
+    s.uv = {fma(w, t[2 * tri.i0], fma(hit.u, t[2 * tri.i1], hit.v * t[2 * tri.i2])),
+            fma(w, t[2 * tri.i0 + 1], fma(hit.u, t[2 * tri.i1 + 1], hit.v * t[2 * tri.i2 + 1]))};
+  }
+}
+
+// The point is moved onto the sphere, whose error no longer grows with the ray's length (Pharr et al. 2023, 6.8.5).
+inline void place_on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit, Surface& s) {
+  s.normal = normalize(fma(hit.t, ray.direction, ray.origin - sphere.center));
+  s.shading = s.normal;
+  s.point = fma(sphere.radius, s.normal, sphere.center);
+  const float size = gamma(8) * sphere.radius;
+  s.error = fma(gamma(4), abs(sphere.center), Vec3{size, size, size});
+  s.uv = {fma(atan2(s.normal.z, s.normal.x), 0.5f * inv_pi, 0.5f), acos(clamp(s.normal.y, -1.0f, 1.0f)) * inv_pi};
+}
+
+inline void place_on_disk(const Disk& disk, const Ray& ray, const Hit& hit, Surface& s) {
+  const Vec3 p = fma(hit.t, ray.direction, ray.origin);
+  s.normal = disk.normal;
+  s.shading = disk.normal;
+  s.point = fma(-dot(p - disk.center, disk.normal), disk.normal, p);
+  const float size = gamma(6) * disk.radius;
+  s.error = fma(gamma(10), abs(disk.center), Vec3{size, size, size});
+  const Frame frame = Frame::around(disk.normal);
+  const Vec3 local = frame.to_local(s.point - disk.center);
+  s.uv = {fma(local.x / disk.radius, 0.5f, 0.5f), fma(local.y / disk.radius, 0.5f, 0.5f)};
+}
+
+inline void place_on_shape(const SceneView& scene, const GeometryRecord& geometry, const Ray& ray, const Hit& hit,
+                           Surface& s) {
+  if (geometry.shape.tag == tag_of<Mesh>(Shapes{})) {
+    place_on_mesh(scene, scene.as<Mesh>(geometry.shape), hit, s);
+  } else if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
+    place_on_sphere(scene.as<Sphere>(geometry.shape), ray, hit, s);
+  } else {
+    place_on_disk(scene.as<Disk>(geometry.shape), ray, hit, s);
+  }
+}
+
+inline void to_world(const InstanceRecord& instance, Surface& s) {
+  const Transform& m = instance.to_world;
+  const Vec3 magnitude = m.magnitude(s.point);
+  s.error = m.spread(s.error) + magnitude * gamma(10);
+  s.point = m.point(s.point);
+  s.normal = normalize(m.vector(s.normal));
+  s.shading = normalize(m.vector(s.shading));
+}
+
+// `hit` must have met something.
+inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
+  const GeometryRecord& geometry = scene.geometries[hit.geometry];
+  Surface s;
+  s.material = geometry.material;
+  uint32_t lights = geometry.lights;
+  if (hit.instance == none) {
+    place_on_shape(scene, geometry, ray, hit, s);
+  } else {
+    const InstanceRecord& instance = scene.instances[hit.instance];
+    Ray local = ray;
+    local.origin = instance.to_object.point(ray.origin);
+    local.direction = instance.to_object.vector(ray.direction);
+    place_on_shape(scene, geometry, local, hit, s);
+    to_world(instance, s);
+    if (instance.material != none) s.material = instance.material;
+    lights = instance.lights == none ? none : scene.lights_of_instance[instance.lights + hit.geometry - instance.first];
+  }
+  s.light = lights == none ? none : scene.light_of_primitive[lights + hit.primitive];
+  return s;
+}
+
+}  // namespace accuray

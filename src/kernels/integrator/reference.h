@@ -1,0 +1,65 @@
+// The naive path tracer that judges all others: no choice of lights, no multiple importance sampling, no cleverness.
+// Every path runs until it leaves the scene or the roulette ends it, and only what it meets by itself counts. Lights
+// that no path can meet (points) are summed plainly, each of them at each vertex. Never optimise this file.
+#pragma once
+
+#include "kernels/integrator/steps.h"
+#include "kernels/schema.h"
+
+namespace accuray {
+
+struct Reference {
+  int32_t max_depth;
+
+  static constexpr const char* name = "reference";
+  static constexpr const char* doc = "The naive path tracer that the others are tested against: slow, simple, unbiased.";
+  static constexpr auto params() {
+    return param_list(Param{.name = "max_depth", .kind = Kind::integer, .doc = "Largest number of scattering events; -1: all.",
+                            .preset = "-1", .low = -1, .high = 1e6, .member = ACCURAY_OFFSET_OF(Reference, max_depth)});
+  }
+
+  template <Accel A>
+  void trace(const SceneView& scene, const A& accel, Path& path) const {
+    while (path.alive) {
+      path.hit = accel.closest(path.ray);
+      path.bsdf_pdf = 0.0f;  // no other technique could have found what this ray meets
+      if (path.hit.geometry == none) {
+        shade_miss(scene, Strategy::bsdf, path);
+        return;
+      }
+      const Surface surface = surface_at(scene, path.ray, path.hit);
+      const Vec3 toward_viewer = -path.ray.direction;
+      if (surface.light != none) path.radiance += path.throughput * emitted(scene, surface, toward_viewer, path.wl);
+      if (max_depth >= 0 && path.depth >= static_cast<uint32_t>(max_depth)) return;
+      const f32x4 u = path.sampler.draw(direction_set(path));
+      const f32x4 u_decision = path.sampler.draw(decision_set(path));
+      const Frame frame = Frame::around(surface.shading);
+      const Vec3 wo = frame.to_local(toward_viewer);
+      const Tagged material = scene.materials[surface.material].bsdf;
+      path.alive = dispatch(Bsdfs{}, material.tag, [&](auto type) {
+        using Bsdf = typename decltype(type)::type;
+        const auto bsdf = scene.as<Bsdf>(material).at(scene, path.wl);
+        add_points(scene, accel, surface, frame, bsdf, wo, path);
+        return scatter(surface, frame, bsdf.sample(wo, u_decision[1], {u[2], u[3]}), path);
+      });
+      if (path.alive && path.depth >= 8) path.alive = survives(path, 8, u_decision[2]);
+    }
+  }
+
+ private:
+  template <Accel A, class BsdfAt>
+  static void add_points(const SceneView& scene, const A& accel, const Surface& surface, const Frame& frame,
+                         const BsdfAt& bsdf, Vec3 wo, Path& path) {
+    for (uint32_t i = 0; i < scene.root->lights.count; ++i) {
+      const LightRecord& record = scene.lights[i];
+      if (!is_delta_light(record.light.tag)) continue;
+      const LightSample light = accuray::sample_light(scene, i, surface.point, Vec2{0.0f, 0.0f});
+      const Vec3 wi = frame.to_local(light.wi);
+      if ((dot(surface.normal, light.wi) > 0.0f) != (wi.z > 0.0f)) continue;
+      const float share = visible_share(accel, surface, light, path.ray.time);
+      path.radiance += path.throughput * bsdf.eval(wo, wi) * scene.spectrum(record.emission, path.wl) * (light.scale * share);
+    }
+  }
+};
+
+}  // namespace accuray

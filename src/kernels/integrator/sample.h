@@ -1,0 +1,78 @@
+// One sample of one pixel, or of one probe ray: the pure function of (scene, seed, pixel, index) that everything adds up.
+#pragma once
+
+#include "kernels/camera/list.h"
+#include "kernels/film/filter.h"
+#include "kernels/film/quantize.h"
+#include "kernels/integrator/list.h"
+
+namespace accuray {
+
+// What a rendering asks for besides the scene.
+struct Request {
+  Observer observer;
+  uint32_t seed;
+  uint32_t replicates;
+  uint32_t width, height;   // of the whole picture
+};
+
+// Every pixel and replicate has a scramble of its own; the replicate takes turns with the sample number.
+inline uint32_t pixel_key(const Request& request, uint32_t x, uint32_t y, uint32_t index) {
+  return hash(request.seed, x, y, index % request.replicates);
+}
+inline Sampler sampler_for(const Request& request, uint32_t key, uint32_t index) {
+  return Sampler::at(key, index / request.replicates);
+}
+inline uint32_t dither_key(uint32_t key, uint32_t index) { return hash(key, index, 0x64697468u); }
+
+// Step generate: a camera path through pixel (x, y).
+inline Path generate(const SceneView& scene, const Request& request, uint32_t x, uint32_t y, const Sampler& sampler,
+                     const Wavelengths& wl, f32x4 u) {
+  const Vec2 offset = dispatch(Filters{}, scene.root->filter.tag, [&](auto type) {
+    const auto& filter = scene.as<typename decltype(type)::type>(scene.root->filter);
+    return Vec2{filter.sample(u[0]), filter.sample(u[1])};
+  });
+  const Vec2 film = {(static_cast<float>(x) + 0.5f + offset.x) / static_cast<float>(request.width),
+                     (static_cast<float>(y) + 0.5f + offset.y) / static_cast<float>(request.height)};
+  const float time = u[3];
+  const Ray ray = dispatch(Cameras{}, scene.root->camera.tag, [&](auto type) {
+    return scene.as<typename decltype(type)::type>(scene.root->camera).ray(film, {0.5f, 0.5f}, time);
+  });
+  return start_path(ray, wl, sampler);
+}
+
+template <Accel A>
+inline void trace(const SceneView& scene, const A& accel, Path& path) {
+  dispatch(Integrators{}, scene.root->integrator.tag, [&](auto type) {
+    scene.as<typename decltype(type)::type>(scene.root->integrator).trace(scene, accel, path);
+    return true;
+  });
+}
+
+// Sample `index` of pixel (x, y), rounded to the film's step.
+template <Accel A>
+inline Quantized sample_pixel(const SceneView& scene, const A& accel, const Request& request, uint32_t x, uint32_t y,
+                              uint32_t index, float inverse_step) {
+  const uint32_t key = pixel_key(request, x, y, index);
+  const Sampler sampler = sampler_for(request, key, index);
+  const f32x4 u = sampler.draw(camera_set);
+  Path path = generate(scene, request, x, y, sampler, sample_wavelengths(scene, request.observer, u[2]), u);
+  trace(scene, accel, path);
+  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
+  return quantize(channels, inverse_step, dither_key(key, index));
+}
+
+// The same along a given ray; `number` takes the pixel's place.
+template <Accel A>
+inline Quantized sample_ray(const SceneView& scene, const A& accel, const Request& request, Vec3 origin, Vec3 direction,
+                            uint32_t number, uint32_t index, float inverse_step) {
+  const uint32_t key = pixel_key(request, number, 0xffffffffu, index);
+  const Sampler sampler = sampler_for(request, key, index);
+  const f32x4 u = sampler.draw(camera_set);
+  Path path = start_path({origin, direction, infinity, u[3]}, sample_wavelengths(scene, request.observer, u[2]), sampler);
+  trace(scene, accel, path);
+  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
+  return quantize(channels, inverse_step, dither_key(key, index));
+}
+
+}  // namespace accuray

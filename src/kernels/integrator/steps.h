@@ -1,0 +1,131 @@
+// The steps that integrators share. Each is a plain function of (scene, intersector, path); none knows who runs it.
+#pragma once
+
+#include "kernels/accel/accel.h"
+#include "kernels/bsdf/list.h"
+#include "kernels/integrator/path_state.h"
+#include "kernels/light/select.h"
+
+namespace accuray {
+
+// Which estimates of direct light count: both with multiple importance sampling, or one alone (for tests).
+enum class Strategy : uint32_t { mis, light, bsdf };
+
+// Share of the first of two techniques: power heuristic with exponent 2 (Veach and Guibas 1995).
+inline float mis_weight(float pdf, float other) {
+  const float a = pdf * pdf;
+  return a / (a + other * other);
+}
+
+template <Accel A>
+inline void intersect(const A& accel, Path& path) {
+  path.hit = accel.closest(path.ray);
+}
+
+inline Spectrum environment_radiance(const SceneView& scene, const Wavelengths& wl) {
+  return scene.spectrum(scene.lights[scene.root->environment].emission, wl);
+}
+
+// Radiance that the surface sends back along the ray.
+inline Spectrum emitted(const SceneView& scene, const Surface& surface, Vec3 wo, const Wavelengths& wl) {
+  const LightRecord& light = scene.lights[surface.light];
+  if (light.both_sides == 0 && dot(surface.normal, wo) <= 0.0f) return lanes(0.0f);
+  return scene.spectrum(light.emission, wl);
+}
+
+// Weight of light that the path met by itself, given that sample_light might have found it too.
+inline float hit_weight(const SceneView& scene, Strategy strategy, const Path& path, uint32_t light, const Surface& at) {
+  if (path.bsdf_pdf == 0.0f || strategy == Strategy::bsdf) return 1.0f;
+  if (strategy == Strategy::light) return 0.0f;
+  const float chosen = choice_probability(scene, path.origin, path.origin_normal, path.ray.time, light);
+  const float pdf = chosen * light_pdf(scene, light, path.origin, path.ray.direction, at);
+  return mis_weight(path.bsdf_pdf, pdf);
+}
+
+// Step shade_miss: the ray left the scene.
+inline void shade_miss(const SceneView& scene, Strategy strategy, Path& path) {
+  path.alive = false;
+  const bool seen_by_camera = path.depth == 0;
+  if (seen_by_camera && scene.root->hide_environment != 0) {
+    path.alpha = 0.0f;
+    return;
+  }
+  if (scene.root->environment == none) {
+    if (seen_by_camera) path.alpha = 0.0f;
+    return;
+  }
+  const float weight = hit_weight(scene, strategy, path, scene.root->environment, Surface{});
+  path.radiance = fma(path.throughput * weight, environment_radiance(scene, path.wl), path.radiance);
+}
+
+// Part of a light sample that arrives: everything but the light's own emission.
+template <Accel A>
+inline float visible_share(const A& accel, const Surface& surface, const LightSample& light, float time) {
+  const Vec3 from = offset_origin(surface.point, surface.error, surface.normal, light.wi);
+  if (light.distance == infinity) return accel.transmittance({from, light.wi, infinity, time});
+  const Vec3 to = offset_origin(light.point, light.error, light.normal, -light.wi);
+  return accel.transmittance({from, to - from, one_minus_epsilon, time});
+}
+
+// Step sample_light: next-event estimation at a vertex whose BSDF values are `bsdf`.
+template <Accel A, class BsdfAt>
+inline void sample_light(const SceneView& scene, const A& accel, Strategy strategy, const Surface& surface,
+                         const Frame& frame, const BsdfAt& bsdf, Vec3 wo, Vec2 u, float u_choice, Path& path) {
+  const LightChoice choice = choose_light(scene, surface.point, surface.shading, path.ray.time, u_choice);
+  if (choice.light == none) return;
+  const LightSample light = sample_light(scene, choice.light, surface.point, u);
+  if (light.pdf == 0.0f || light.scale == 0.0f) return;
+  const LightRecord& record = scene.lights[choice.light];
+  const bool delta = is_delta_light(record.light.tag);
+  if (strategy == Strategy::bsdf && !delta) return;
+
+  // A shading normal must not carry light through the true surface.
+  const Vec3 wi = frame.to_local(light.wi);
+  const bool same_side = (dot(surface.normal, light.wi) > 0.0f) == (wi.z > 0.0f);
+  const Spectrum f = same_side ? bsdf.eval(wo, wi) : lanes(0.0f);
+  if (is_black(f)) return;
+  const float pdf = light.pdf * choice.probability;
+  const float weight = delta || strategy == Strategy::light ? 1.0f : mis_weight(pdf, bsdf.pdf(wo, wi));
+  const float share = visible_share(accel, surface, light, path.ray.time);
+  if (share == 0.0f) return;
+  const Spectrum emission = scene.spectrum(record.emission, path.wl);
+  path.radiance = fma(path.throughput * f, emission * (light.scale * weight * share / pdf), path.radiance);
+}
+
+// What a lobe costs of the weighted depth budget (AccuRay report 2014).
+inline uint32_t depth_cost(uint32_t lobe) {
+  if ((lobe & lobe_transmission) != 0) return 1;
+  return (lobe & lobe_specular) != 0 ? 2 : 4;
+}
+
+// Continues the path along a BSDF sample; false if there is nothing to continue.
+inline bool scatter(const Surface& surface, const Frame& frame, const BsdfSample& sample, Path& path) {
+  const Vec3 wi = frame.to_world(sample.wi);
+  const bool same_side = (dot(surface.normal, wi) > 0.0f) == (sample.wi.z > 0.0f);
+  if (!same_side || is_black(sample.weight)) return false;
+  path.throughput *= sample.weight;
+  if ((sample.lobe & lobe_disperses) != 0 && !path.wl.hero_only) {
+    path.throughput = keep_hero(path.throughput);
+    path.wl.hero_only = true;
+  }
+  path.eta_scale *= sample.eta_scale;
+  path.bsdf_pdf = sample.pdf;
+  path.origin = surface.point;
+  path.origin_normal = surface.shading;
+  path.ray.origin = offset_origin(surface.point, surface.error, surface.normal, wi);
+  path.ray.direction = wi;
+  path.spent += depth_cost(sample.lobe);
+  ++path.depth;
+  return true;
+}
+
+// Russian roulette on the throughput, without the radiance scaling of refraction; false ends the path.
+inline bool survives(Path& path, uint32_t first_depth, float u) {
+  if (path.depth < first_depth) return true;
+  const float chance = min(max_lane(path.throughput) * path.eta_scale, 0.95f);
+  if (!(u < chance)) return false;
+  path.throughput *= 1.0f / chance;
+  return true;
+}
+
+}  // namespace accuray

@@ -1,0 +1,57 @@
+// What every light offers.
+//
+// Conventions
+//   - sample(reference, u) chooses a point of the light for a reference point; `pdf` is per solid angle at the
+//     reference. A failed sample has pdf 0. Lights that no path can hit (`delta`) have pdf 1.
+//   - pdf(reference, wi, surface) is the density with which sample() would have chosen the direction wi, whose ray
+//     met the light at `surface`.
+//   - The radiance arriving along the sample is the light's emission times `scale`: 1 for surfaces and environments,
+//     1/d^2 for a point, 0 on a side that does not emit.
+#pragma once
+
+#include "kernels/geometry/surface.h"
+#include "kernels/sampling/warp.h"
+
+namespace accuray {
+
+struct LightSample {
+  Vec3 wi;          // unit, from the reference to the light
+  Vec3 point;       // on the light, if `distance` is finite
+  Vec3 error;       // bound of the point's error
+  Vec3 normal;      // of the light there; zero for points
+  float distance;
+  float pdf;
+  float scale;
+};
+
+inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0.0f, 0.0f, 0.0f}; }
+
+// Below this solid angle (sr) a flat light is sampled by area: the density per solid angle hardly varies over it then,
+// and the spherical formulas lose digits as 1e-7 / solid angle.
+constexpr float least_spherical = 0.02f;
+constexpr float most_spherical = 6.2f;
+
+// Rough solid angle of a flat light around `middle`; decides how it is sampled, so it must be the same function of the
+// reference wherever it is asked for.
+inline float rough_solid_angle(Vec3 reference, Vec3 middle, Vec3 normal, float area) {
+  const Vec3 d = middle - reference;
+  const float squared = length_squared(d);
+  return squared > 0.0f ? area * abs(dot(normal, d)) / (squared * sqrt(squared)) : infinity;
+}
+
+// Density per solid angle of a point chosen uniformly over `area`.
+inline float area_to_solid_angle(float area, float distance_squared, float cosine) {
+  return cosine > 0.0f ? distance_squared / (area * cosine) : 0.0f;
+}
+
+// A light sample for a chosen point of a flat light; pdf is left to the caller if it is not by area.
+inline LightSample sample_towards(Vec3 reference, Vec3 point, Vec3 error, Vec3 normal, float area) {
+  const Vec3 d = point - reference;
+  const float squared = length_squared(d);
+  if (!(squared > 0.0f)) return no_light();
+  const float distance = sqrt(squared);
+  const Vec3 wi = d * (1.0f / distance);
+  return {wi, point, error, normal, distance, area_to_solid_angle(area, squared, abs(dot(normal, wi))), 1.0f};
+}
+
+}  // namespace accuray

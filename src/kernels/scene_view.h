@@ -1,0 +1,130 @@
+// The lowered scene as kernels see it: flat tables, no owner.
+//
+// The bytes are relocatable: a Root and its tables in section 0, bulk data (meshes) in sections of their own, and
+// Slices (section, offset, count) in place of pointers. A SceneView is made anew on each device from the root and the
+// addresses at which the sections lie there.
+#pragma once
+
+#include "kernels/geometry/ray.h"
+#include "kernels/math/transform.h"
+#include "kernels/spectrum/spectrum.h"
+
+namespace accuray {
+
+constexpr uint32_t block_version = 1;
+constexpr uint32_t lambda_guide_size = 512;
+
+template <class T>
+struct Slice {
+  uint64_t offset;   // bytes from the section's start
+  uint32_t section;
+  uint32_t count;
+};
+
+// A value of one of a family's types: position in the family's list, and its parameters in SceneView::parameters.
+struct Tagged {
+  uint32_t tag;
+  uint32_t offset;
+};
+
+struct MaterialRecord {
+  Tagged bsdf;
+  SpectrumRef emission;      // none: does not emit
+  uint32_t emits_both_sides;
+};
+
+struct GeometryRecord {
+  Tagged shape;              // Mesh, Sphere or Disk; see geometry/list.h
+  uint32_t material;
+  uint32_t lights;           // first entry in light_of_primitive; none: does not emit
+};
+
+// A copy of the geometries [first, first + count) under a transform.
+struct InstanceRecord {
+  Transform to_world;
+  Transform to_object;
+  uint32_t first, count;
+  uint32_t lights;           // first entry in lights_of_instance, one per geometry; none: nothing emits
+  uint32_t material;         // overrides the prototypes' material; none: does not
+};
+
+struct LightRecord {
+  Tagged light;
+  SpectrumRef emission;
+  uint32_t both_sides;
+};
+
+struct Root {
+  uint32_t version;
+  uint32_t environment;      // index of the constant environment light; none: black
+  uint32_t hide_environment;
+  uint32_t top_geometries;   // geometries [0, top_geometries) are in the scene itself, the others only instanced
+  float film_step;
+  uint32_t reserved[3];
+  Tagged camera, filter, integrator;
+  Slice<MaterialRecord> materials;
+  Slice<GeometryRecord> geometries;
+  Slice<InstanceRecord> instances;
+  Slice<LightRecord> lights;
+  Slice<float> light_cdf;              // running sums of selection probabilities, lights + 1 entries
+  Slice<uint32_t> light_of_primitive;
+  Slice<uint32_t> lights_of_instance;
+  Slice<SpectrumRecord> spectra;
+  Slice<float> tables;
+  Slice<float> response;               // sensor at 360 .. 830 nm, four channels per node
+  Slice<float> lambda_cdf;             // wavelength sampling: running sums, 471 entries
+  Slice<uint32_t> lambda_guide;        // first cell of lambda_cdf that each of lambda_guide_size parts of [0, 1) meets
+  Slice<uint32_t> parameters;          // the types' structs, in 32-bit words
+};
+
+struct SceneView {
+  const Root* root;
+  const uint8_t* const* sections;
+  const MaterialRecord* materials;
+  const GeometryRecord* geometries;
+  const InstanceRecord* instances;
+  const LightRecord* lights;
+  const float* light_cdf;
+  const uint32_t* light_of_primitive;
+  const uint32_t* lights_of_instance;
+  const SpectrumRecord* spectra;
+  const float* tables;
+  const float* response;
+  const float* lambda_cdf;
+  const uint32_t* lambda_guide;
+  const uint32_t* parameters;
+
+  template <class T>
+  const T* at(const Slice<T>& slice) const {
+    return reinterpret_cast<const T*>(sections[slice.section] + slice.offset);
+  }
+  template <class T>
+  const T& as(Tagged value) const {
+    return *reinterpret_cast<const T*>(parameters + value.offset);
+  }
+  Spectrum spectrum(SpectrumRef ref, const Wavelengths& wl) const { return evaluate(spectra[ref.index], tables, wl); }
+
+  // `section_bases` must stay where it is for the life of the view.
+  static SceneView of(const uint8_t* const* section_bases) {
+    SceneView view{};
+    view.root = reinterpret_cast<const Root*>(section_bases[0]);
+    view.sections = section_bases;
+    const Root& root = *view.root;
+    view.materials = view.at(root.materials);
+    view.geometries = view.at(root.geometries);
+    view.instances = view.at(root.instances);
+    view.lights = view.at(root.lights);
+    view.light_cdf = view.at(root.light_cdf);
+    view.light_of_primitive = view.at(root.light_of_primitive);
+    view.lights_of_instance = view.at(root.lights_of_instance);
+    view.spectra = view.at(root.spectra);
+    view.tables = view.at(root.tables);
+    view.response = view.at(root.response);
+    view.lambda_cdf = view.at(root.lambda_cdf);
+    view.lambda_guide = view.at(root.lambda_guide);
+    view.parameters = view.at(root.parameters);
+    return view;
+  }
+};
+
+}  // namespace accuray

@@ -1,0 +1,278 @@
+#include "lower/builder.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "kernels/bsdf/list.h"
+
+namespace accuray {
+
+namespace {
+
+Vec3 moved_point(const Matrix& m, Vec3 p) { return to_vec3(transform_point(m, {p.x, p.y, p.z})); }
+Vec3 moved_vector(const Matrix& m, Vec3 v) { return to_vec3(transform_vector(m, {v.x, v.y, v.z})); }
+
+Sphere moved(const Matrix& m, Sphere s) { return {moved_point(m, s.center), static_cast<float>(s.radius * scale_of(m))}; }
+Disk moved(const Matrix& m, Disk d) {
+  return {moved_point(m, d.center), normalize(moved_vector(m, d.normal)), static_cast<float>(d.radius * scale_of(m))};
+}
+
+SphereLight light_of(const Sphere& s) { return {s.center, s.radius}; }
+DiskLight light_of(const Disk& d) { return {d.center, d.normal, d.radius}; }
+
+// A rectangle as the two triangles that it is rendered by.
+MeshArrays rectangle_mesh(const Values& values) {
+  const auto c = vec_of(values, "corner");
+  const auto u = vec_of(values, "edge_u");
+  const auto v = vec_of(values, "edge_v");
+  MeshArrays mesh;
+  for (const auto& [s, t] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+    for (size_t k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(c[k] + s * u[k] + t * v[k]));
+    mesh.uvs.push_back(static_cast<float>(s));
+    mesh.uvs.push_back(static_cast<float>(t));
+  }
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+// Applies a transform to a mesh; mirroring turns the winding around so that the front side stays the front side.
+void move_mesh(const Matrix& m, MeshArrays& mesh) {
+  transform_array<true>(m, mesh.positions);
+  transform_array<false>(m, mesh.normals);
+  if (determinant(m) < 0.0) {
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  }
+}
+
+}  // namespace
+
+SceneBuilder::SceneBuilder(ColourData colour) : spectra_(std::move(colour)), lights_(pool_, spectra_) {
+  root_.version = block_version;
+  root_.environment = none;
+  root_.film_step = 0x1p-24f;
+}
+
+uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
+                                    bool both_sides) {
+  const bool emits = emission && !spectra_.is_zero(*emission);
+  materials_.push_back({lower_type(Bsdfs{}, type, values, pool_), {emits ? emission->index : none}, both_sides ? 1u : 0u});
+  return static_cast<uint32_t>(materials_.size() - 1);
+}
+
+void SceneBuilder::grow_bounds(Vec3 p) {
+  low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
+  high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
+}
+
+float SceneBuilder::scene_radius() const {
+  return low_.x <= high_.x ? std::max(0.5f * length(high_ - low_), 1e-6f) : 1.0f;
+}
+
+uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t lights, bool prototype) {
+  const auto number = static_cast<uint32_t>(geometries_.size());
+  if (!prototype) {
+    if (root_.top_geometries != number) throw std::logic_error("prototypes must be added after all other shapes");
+    ++root_.top_geometries;
+  }
+  geometries_.push_back({shape, material, lights});
+  return number;
+}
+
+uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material) {
+  if (material.emission.index == none) return none;
+  const auto first = static_cast<uint32_t>(light_of_primitive_.size());
+  const auto lights = lights_.add_mesh(arrays.positions, arrays.indices, material.emission, material.emits_both_sides != 0);
+  light_of_primitive_.insert(light_of_primitive_.end(), lights.begin(), lights.end());
+  return first;
+}
+
+template <class L>
+uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& material) {
+  if (material.emission.index == none) return none;
+  light_of_primitive_.push_back(lights_.add(light, material.emission, material.emits_both_sides != 0));
+  return static_cast<uint32_t>(light_of_primitive_.size() - 1);
+}
+
+uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype) {
+  if (transform) move_mesh(*transform, arrays);
+  if (!prototype) {
+    for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
+      grow_bounds({arrays.positions[i], arrays.positions[i + 1], arrays.positions[i + 2]});
+    }
+  }
+  const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material));
+  Mesh mesh{};
+  const auto store = [&]<class T>(Slice<T>& slice, std::vector<T>&& values) {
+    if (values.empty()) return;
+    slice = {0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(values.size())};
+    bulk_.push_back(section_of(std::move(values)));
+  };
+  store(mesh.positions, std::move(arrays.positions));
+  store(mesh.indices, std::move(arrays.indices));
+  store(mesh.normals, std::move(arrays.normals));
+  store(mesh.uvs, std::move(arrays.uvs));
+  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, prototype);
+}
+
+template <class Shape>
+uint32_t SceneBuilder::add_analytic(const Shape& shape, uint32_t material, bool prototype) {
+  if (!prototype) {
+    grow_bounds(shape.center - Vec3{shape.radius, shape.radius, shape.radius});
+    grow_bounds(shape.center + Vec3{shape.radius, shape.radius, shape.radius});
+  }
+  const uint32_t lights = prototype ? none : add_surface_light(light_of(shape), materials_.at(material));
+  return add_geometry({tag_of<Shape>(Shapes{}), pool_.add(shape)}, material, lights, prototype);
+}
+
+uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,
+                                 uint32_t material, bool prototype) {
+  const Matrix matrix = transform.value_or(identity_matrix);
+  if (type == Sphere::name) return add_analytic(moved(matrix, struct_of<Sphere>(values)), material, prototype);
+  if (type == Disk::name) return add_analytic(moved(matrix, struct_of<Disk>(values)), material, prototype);
+  if (type == Rectangle::name) return add_mesh(rectangle_mesh(values), transform, material, prototype);
+  throw std::invalid_argument("'" + std::string(type) + "' is no shape of this kind");
+}
+
+void SceneBuilder::add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
+                                std::optional<uint32_t> material) {
+  const Matrix matrix = transform.value_or(identity_matrix);
+  InstanceRecord instance{to_transform(matrix), to_transform(inverse(matrix)), first, count, none, material.value_or(none)};
+  instance.lights = instance_lights(matrix, instance, material);
+  instances_.push_back(instance);
+}
+
+uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material) {
+  const auto first = static_cast<uint32_t>(lights_of_instance_.size());
+  bool any = false;
+  for (uint32_t g = instance.first; g < instance.first + instance.count; ++g) {
+    const GeometryRecord& geometry = geometries_.at(g);
+    const MaterialRecord& made_of = materials_.at(material.value_or(geometry.material));
+    const uint32_t* parameters = pool_.words().data() + geometry.shape.offset;
+    uint32_t lights = none;
+    if (geometry.shape.tag == tag_of<Mesh>(Shapes{})) {
+      const Mesh& mesh = *reinterpret_cast<const Mesh*>(parameters);
+      const Section& positions = bulk_.at(mesh.positions.section - 1);
+      const Section& indices = bulk_.at(mesh.indices.section - 1);
+      MeshArrays world;
+      const auto* p = reinterpret_cast<const float*>(positions.data);
+      const auto* i = reinterpret_cast<const uint32_t*>(indices.data);
+      world.positions.assign(p, p + mesh.positions.count);
+      transform_array<true>(matrix, world.positions);
+      for (size_t k = 0; k + 2 < world.positions.size(); k += 3) {
+        grow_bounds({world.positions[k], world.positions[k + 1], world.positions[k + 2]});
+      }
+      if (made_of.emission.index != none) {
+        world.indices.assign(i, i + mesh.indices.count);
+        lights = add_mesh_lights(world, made_of);
+      }
+    } else if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
+      const Sphere sphere = moved(matrix, *reinterpret_cast<const Sphere*>(parameters));
+      grow_bounds(sphere.center);
+      lights = add_surface_light(light_of(sphere), made_of);
+    } else {
+      const Disk disk = moved(matrix, *reinterpret_cast<const Disk*>(parameters));
+      grow_bounds(disk.center);
+      lights = add_surface_light(light_of(disk), made_of);
+    }
+    any = any || lights != none;
+    lights_of_instance_.push_back(lights);
+  }
+  if (any) return first;
+  lights_of_instance_.resize(first);
+  return none;
+}
+
+void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission) {
+  if (type == ConstantLight::name) {
+    if (root_.environment != none) throw std::invalid_argument("a scene has at most one environment light");
+    root_.environment = lights_.add(ConstantLight{}, emission, true);
+    return;
+  }
+  const uint32_t tag = tag_named(NamedLights{}, type);
+  dispatch(NamedLights{}, tag, [&](auto named) {
+    using L = typename decltype(named)::type;
+    return lights_.add(struct_of<L>(values), emission, false);
+  });
+}
+
+void SceneBuilder::set_camera(std::string_view type, const Values& values, double aspect) {
+  if (type != Perspective::name) throw std::invalid_argument("no camera is called '" + std::string(type) + "'");
+  const auto position = vec_of(values, "position");
+  const auto look_at = vec_of(values, "look_at");
+  const auto up = vec_of(values, "up");
+  const auto unit = [](std::array<double, 3> v) {
+    const double l = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (!(l > 0.0)) throw std::invalid_argument("camera: look_at and up must differ from the viewing position and direction");
+    return std::array<double, 3>{v[0] / l, v[1] / l, v[2] / l};
+  };
+  const auto crossed = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return std::array<double, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  const auto backward = unit({position[0] - look_at[0], position[1] - look_at[1], position[2] - look_at[2]});
+  const auto right = unit(crossed(unit(up), backward));
+  double half = 0.0;
+  if (values.contains("focal_length")) {
+    half = 0.5 * number_of(values, "film_size") / number_of(values, "focal_length");
+  } else {
+    const SinCosDouble angle = sincos(0.5 * number_of(values, "fov"));
+    half = angle.sin / angle.cos;
+  }
+  const bool vertical = number_of(values, "fov_axis") == 0.0;
+  Perspective camera{};
+  camera.position = to_vec3(position);
+  camera.right = to_vec3(right);
+  camera.up = to_vec3(crossed(backward, right));
+  camera.backward = to_vec3(backward);
+  camera.half_height = static_cast<float>(vertical ? half : half / aspect);
+  camera.half_width = static_cast<float>(vertical ? half * aspect : half);
+  root_.camera = {tag_of<Perspective>(Cameras{}), pool_.add(camera)};
+}
+
+void SceneBuilder::set_filter(std::string_view type, const Values& values) {
+  const uint32_t tag = tag_named(Filters{}, type);
+  const uint32_t offset = dispatch(Filters{}, tag, [&](auto listed) {
+    auto filter = struct_of<typename decltype(listed)::type>(values);
+    if constexpr (requires { filter.quantiles; }) tabulate(filter);
+    return pool_.add(filter);
+  });
+  root_.filter = {tag, offset};
+}
+
+void SceneBuilder::set_integrator(std::string_view type, const Values& values) {
+  root_.integrator = lower_type(Integrators{}, type, values, pool_);
+}
+
+void SceneBuilder::set_film(double step, bool hide_environment) {
+  root_.film_step = static_cast<float>(step);
+  root_.hide_environment = hide_environment ? 1u : 0u;
+}
+
+Block SceneBuilder::finish() {
+  const std::vector<float> lambda_cdf = lights_.lambda_cdf(scene_radius());
+  std::vector<float> response(4 * lambda_nodes);
+  const std::vector<double>& cmf = spectra_.colour().cmf;
+  double y_sum = 0.0;
+  for (uint32_t i = 0; i < lambda_nodes; ++i) y_sum += cmf[3 * i + 1];
+  for (uint32_t i = 0; i < lambda_nodes; ++i) {
+    for (uint32_t c = 0; c < 3; ++c) response[4 * i + c] = static_cast<float>(cmf[3 * i + c] / y_sum);
+  }
+  RootWriter writer;
+  root_.materials = writer.append(materials_);
+  root_.geometries = writer.append(geometries_);
+  root_.instances = writer.append(instances_);
+  root_.lights = writer.append(lights_.records());
+  root_.light_cdf = writer.append(lights_.power_cdf(scene_radius()));
+  root_.light_of_primitive = writer.append(light_of_primitive_);
+  root_.lights_of_instance = writer.append(lights_of_instance_);
+  root_.spectra = writer.append(spectra_.records());
+  root_.tables = writer.append(spectra_.tables());
+  root_.response = writer.append(response);
+  root_.lambda_cdf = writer.append(lambda_cdf);
+  root_.lambda_guide = writer.append(lambda_guide(lambda_cdf));
+  root_.parameters = writer.append(pool_.words());
+  std::vector<Section> sections{writer.finish(root_)};
+  sections.insert(sections.end(), bulk_.begin(), bulk_.end());
+  return Block(std::move(sections));
+}
+
+}  // namespace accuray

@@ -1,0 +1,77 @@
+// From a resolved scene description to the block that engines render.
+//
+// Usage: add spectra, materials, shapes (first those of the scene itself, then prototypes), instances and lights, set
+// camera, filter, integrator and film, and call finish() once.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "kernels/camera/list.h"
+#include "kernels/film/filter.h"
+#include "kernels/geometry/shapes.h"
+#include "kernels/integrator/list.h"
+#include "lower/block.h"
+#include "lower/lights.h"
+#include "lower/parameters.h"
+#include "lower/spectra.h"
+#include "lower/transform.h"
+
+namespace accuray {
+
+
+// Bulk arrays of a mesh; empty normals or uvs: none.
+struct MeshArrays {
+  std::vector<float> positions;
+  std::vector<uint32_t> indices;
+  std::vector<float> normals;
+  std::vector<float> uvs;
+};
+
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(ColourData colour);
+
+  SpectrumPool& spectra() { return spectra_; }
+
+  uint32_t add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission, bool both_sides);
+  // Each returns the geometry's number. `prototype`: rendered through instances only; these come after all others.
+  uint32_t add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype);
+  uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform, uint32_t material,
+                     bool prototype);
+  void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform, std::optional<uint32_t> material);
+  void add_light(std::string_view type, const Values& values, SpectrumRef emission);
+
+  void set_camera(std::string_view type, const Values& values, double aspect);
+  void set_filter(std::string_view type, const Values& values);
+  void set_integrator(std::string_view type, const Values& values);
+  void set_film(double step, bool hide_environment);
+
+  Block finish();
+
+ private:
+  uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, bool prototype);
+  // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
+  uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material);
+  template <class Shape>
+  uint32_t add_analytic(const Shape& shape, uint32_t material, bool prototype);
+  template <class L>
+  uint32_t add_surface_light(const L& light, const MaterialRecord& material);
+  uint32_t instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material);
+  void grow_bounds(Vec3 point);
+  float scene_radius() const;
+
+  SpectrumPool spectra_;
+  ParameterPool pool_;
+  LightTable lights_;
+  Root root_{};
+  std::vector<MaterialRecord> materials_;
+  std::vector<GeometryRecord> geometries_;
+  std::vector<InstanceRecord> instances_;
+  std::vector<uint32_t> light_of_primitive_;
+  std::vector<uint32_t> lights_of_instance_;
+  std::vector<Section> bulk_;      // sections 1, 2, ...
+  Vec3 low_{infinity, infinity, infinity}, high_{-infinity, -infinity, -infinity};
+};
+
+}  // namespace accuray

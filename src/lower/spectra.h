@@ -1,0 +1,61 @@
+// From descriptions of spectra to the records and tables that kernels read.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "kernels/spectrum/rgb.h"
+#include "kernels/spectrum/spectrum.h"
+
+namespace accuray {
+
+// Colour data that lowering needs. All arrays are at 360, 361, ... 830 nm.
+struct ColourData {
+  std::vector<double> cmf;   // 471 x 3, CIE 1931
+  std::vector<double> d65;   // 471, scaled to Y = 1
+};
+
+class SpectrumPool {
+ public:
+  explicit SpectrumPool(ColourData colour);
+
+  // The RGB table of lower/rgb_table.h; needed before the first RGB spectrum.
+  void set_rgb_table(std::vector<float> scale_nodes, std::vector<float> coefficients);
+
+  SpectrumRef constant(double value);
+  // Piecewise linear through (wavelengths[i], values[i]); outside, the end values or zero.
+  SpectrumRef table(std::span<const double> wavelengths, std::span<const double> values, bool hold, double scale);
+  SpectrumRef rgb_reflectance(double r, double g, double b, double scale);
+  // A light of this colour under D65: rgb (1, 1, 1) is D65 with Y = 1.
+  SpectrumRef rgb_emission(double r, double g, double b, double scale);
+  // Planck's law, W m^-2 sr^-1 nm^-1.
+  SpectrumRef blackbody(double kelvin, double scale);
+  // n^2 = 1 + a0 + sum b L^2 / (L^2 - c), L in micrometres.
+  SpectrumRef sellmeier(double a0, std::span<const double> b, std::span<const double> c, double scale);
+  // n = a + b / L^2.
+  SpectrumRef cauchy(double a, double b, double scale);
+
+  double value(SpectrumRef ref, double lambda) const;
+  bool is_zero(SpectrumRef ref) const;
+
+  const std::vector<SpectrumRecord>& records() const { return records_; }
+  const std::vector<float>& tables() const { return tables_; }
+  const ColourData& colour() const { return colour_; }
+
+ private:
+  SpectrumRef add(SpectrumRecord record);
+  SpectrumRef add_sampled(const std::vector<double>& values, double step, double scale);
+  template <class F>
+  SpectrumRef add_function(F&& f, double scale);
+  Sigmoid coefficients(double r, double g, double b) const;
+  uint32_t d65_table();
+
+  ColourData colour_;
+  std::vector<SpectrumRecord> records_;
+  std::vector<float> tables_;
+  std::vector<float> rgb_nodes_, rgb_coefficients_;
+  std::optional<uint32_t> d65_table_;
+};
+
+}  // namespace accuray

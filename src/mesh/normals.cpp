@@ -1,0 +1,136 @@
+#include "mesh/normals.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "mesh/index_table.h"
+
+namespace accuray::mesh {
+namespace {
+
+using Vec3 = std::array<double, 3>;
+
+Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length(const Vec3& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+Vec3 unit(const Vec3& a) {
+  double scale = 1.0 / length(a);
+  return {a[0] * scale, a[1] * scale, a[2] * scale};
+}
+
+// Arc tangent of x in [0, 1], to 2e-8 (Abramowitz and Stegun 1964, 4.4.49): ample for a weight.
+double arc_tangent(double x) {
+  double y = x * x;
+  return x * (1.0 + y * (-0.3333314528 + y * (0.1999355085 + y * (-0.1420889944 + y * (0.1065626393 +
+              y * (-0.0752896400 + y * (0.0429096138 + y * (-0.0161657367 + y * 0.0028662257))))))));
+}
+
+// Angle between unit vectors, accurate for small and flat angles too (Kahan 2006): 2 atan(|a - b| / |a + b|).
+double angle(const Vec3& a, const Vec3& b) {
+  double opposite = length(a - b), adjacent = length(a + b);
+  if (opposite <= adjacent) return 2.0 * arc_tangent(opposite / adjacent);
+  return std::numbers::pi - 2.0 * arc_tangent(adjacent / opposite);
+}
+
+// Weighted sum of face normals, with the sum of the weights.
+struct Sum {
+  Vec3 normal{};
+  double weight = 0.0;
+
+  void add(const Vec3& n, double w) {
+    for (size_t i = 0; i < 3; ++i) normal[i] += w * n[i];
+    weight += w;
+  }
+  void add(const Sum& other) {
+    for (size_t i = 0; i < 3; ++i) normal[i] += other.normal[i];
+    weight += other.weight;
+  }
+  // Whether the normals do not cancel.
+  bool points_somewhere() const { return length(normal) > 1e-6 * weight; }
+};
+
+struct Triangle {
+  std::array<uint32_t, 3> vertex;
+  Vec3 normal;
+  std::array<double, 3> angle;
+};
+
+Triangle triangle_at(std::span<const float> positions, std::span<const uint32_t> indices, size_t corner) {
+  Triangle t;
+  std::array<Vec3, 3> p;
+  for (size_t i = 0; i < 3; ++i) {
+    t.vertex[i] = indices[corner + i];
+    const float* v = &positions[3 * size_t{t.vertex[i]}];
+    p[i] = {v[0], v[1], v[2]};
+  }
+  Vec3 u = unit(p[1] - p[0]), v = unit(p[2] - p[1]), w = unit(p[0] - p[2]);
+  Vec3 back_u = Vec3{} - u, back_v = Vec3{} - v, back_w = Vec3{} - w;
+  t.normal = unit(cross(p[1] - p[0], p[2] - p[1]));
+  t.angle = {angle(u, back_w), angle(v, back_u), angle(w, back_v)};
+  return t;
+}
+
+// For each vertex the first one at the same position.
+std::vector<uint32_t> weld(std::span<const float> positions) {
+  size_t vertices = positions.size() / 3;
+  std::vector<uint32_t> distinct;  // first vertex of each position
+  std::vector<uint32_t> first(vertices);
+  IndexTable table;
+  auto bits = [&](uint32_t vertex, size_t axis) { return std::bit_cast<uint32_t>(positions[3 * size_t{vertex} + axis] + 0.0f); };
+  auto hash = [&](uint32_t vertex) { return hash_words(bits(vertex, 0), bits(vertex, 1), bits(vertex, 2)); };
+  for (uint32_t vertex = 0; vertex < vertices; ++vertex) {
+    auto same = [&](uint32_t number) {
+      uint32_t other = distinct[number];
+      return bits(vertex, 0) == bits(other, 0) && bits(vertex, 1) == bits(other, 1) && bits(vertex, 2) == bits(other, 2);
+    };
+    uint32_t fresh = static_cast<uint32_t>(distinct.size());
+    uint32_t number = table.find_or_insert(hash(vertex), fresh, same, [&](uint32_t n) { return hash(distinct[n]); });
+    if (number == fresh) distinct.push_back(vertex);
+    first[vertex] = distinct[number];
+  }
+  return first;
+}
+
+}  // namespace
+
+std::vector<float> smooth_normals(std::span<const float> positions, std::span<const uint32_t> indices) {
+  size_t vertices = positions.size() / 3;
+  std::vector<Sum> own(vertices);
+  for (size_t corner = 0; corner < indices.size(); corner += 3) {
+    Triangle t = triangle_at(positions, indices, corner);
+    for (size_t i = 0; i < 3; ++i) own[t.vertex[i]].add(t.normal, t.angle[i]);
+  }
+
+  std::vector<uint32_t> first = weld(positions);
+  std::vector<Sum> shared = own;
+  for (size_t i = 0; i < vertices; ++i) {
+    if (first[i] == i) continue;
+    shared[first[i]].add(own[i]);
+  }
+
+  std::vector<float> normals(positions.size());
+  std::vector<bool> cancelled(vertices);
+  for (size_t i = 0; i < vertices; ++i) {
+    const Sum& sum = shared[first[i]].points_somewhere() ? shared[first[i]] : own[i];
+    cancelled[i] = sum.weight > 0.0 && !sum.points_somewhere();
+    Vec3 n = sum.weight > 0.0 && !cancelled[i] ? unit(sum.normal) : Vec3{0.0, 1.0, 0.0};
+    for (size_t j = 0; j < 3; ++j) normals[3 * i + j] = static_cast<float>(n[j]);
+  }
+  for (size_t corner = 0; corner < indices.size(); corner += 3) {
+    if (!cancelled[indices[corner]] && !cancelled[indices[corner + 1]] && !cancelled[indices[corner + 2]]) continue;
+    Triangle t = triangle_at(positions, indices, corner);
+    for (uint32_t vertex : t.vertex) {
+      if (!cancelled[vertex]) continue;
+      for (size_t j = 0; j < 3; ++j) normals[3 * size_t{vertex} + j] = static_cast<float>(t.normal[j]);
+    }
+  }
+  return normals;
+}
+
+}  // namespace accuray::mesh

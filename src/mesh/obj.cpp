@@ -1,0 +1,266 @@
+#include "mesh/obj.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "mesh/checks.h"
+#include "mesh/error.h"
+#include "mesh/index_table.h"
+#include "mesh/input.h"
+#include "mesh/text.h"
+
+namespace accuray::mesh {
+namespace {
+
+// What a corner of a face refers to, counted from 0; kNone where it has no such part.
+struct Corner {
+  uint32_t position, uv, normal;
+  bool operator==(const Corner&) const = default;
+};
+
+// One of the three lists that faces refer to.
+struct Attribute {
+  const char* name;
+  size_t width;
+  std::vector<float> values{};
+  // The farthest reference to an entry that did not exist yet, and its line.
+  uint64_t farthest = 0;
+  uint64_t farthest_line = 0;
+
+  uint64_t count() const { return values.size() / width; }
+  // What a face may write at this point; `relative`: also back from the latest.
+  std::string allowed(bool relative) const {
+    if (values.empty()) return std::string("none, for there is no ") + name;
+    std::string last = std::to_string(count());
+    return "1 to " + last + (relative ? " or -" + last + " to -1" : "");
+  }
+};
+
+class ObjReader {
+ public:
+  explicit ObjReader(Input input) : input_(std::move(input)) {}
+
+  MeshData read() {
+    std::string_view line;
+    while (next_logical_line(line)) read_line(line);
+    check_references();
+    gather();
+    repair(mesh_);
+    mesh_.indices.shrink_to_fit();
+    return std::move(mesh_);
+  }
+
+ private:
+  // The next line with its continuations; first_line_ becomes the number of its first one.
+  bool next_logical_line(std::string_view& line) {
+    if (!input_.next_line(line)) return false;
+    first_line_ = input_.line();
+    if (line.empty() || line.back() != '\\' || Words(line, true).at_end()) return true;
+    joined_.clear();
+    while (!line.empty() && line.back() == '\\') {
+      joined_.append(line.substr(0, line.size() - 1)).push_back(' ');
+      check_length(joined_.size());
+      if (!input_.next_line(line)) line = {};
+    }
+    line = joined_.append(line);
+    return true;
+  }
+
+  void check_length(size_t size) const {
+    if (size > Input::kMaxLine) fail("a continued line", "", "is too long", std::to_string(Input::kMaxLine) + " bytes");
+  }
+
+  void read_line(std::string_view line) {
+    if (line.starts_with("\xEF\xBB\xBF") && first_line_ == 1) line.remove_prefix(3);  // byte order mark
+    Words words(line, true);
+    std::string_view keyword = words.word();
+    if (keyword.empty()) return;
+    if (keyword == "v") {
+      read_position(words);
+    } else if (keyword == "vn") {
+      read_numbers(words, keyword, 3, 3, normals_);
+    } else if (keyword == "vt") {
+      read_numbers(words, keyword, 1, 3, uvs_);
+    } else if (keyword == "f") {
+      read_face(words);
+    } else if (std::find(kIgnored.begin(), kIgnored.end(), keyword) == kIgnored.end()) {
+      if (mesh_.report.unknown++ == 0) {
+        mesh_.report.first_unknown = std::string(keyword.substr(0, 60)) + " in line " + std::to_string(first_line_);
+      }
+      return;
+    }
+    recognised_ = true;
+  }
+
+  void read_position(Words& words) {
+    size_t count = read_numbers(words, "v", 3, 6, positions_);
+    if (count == 5) fail("v", "", "has 5 numbers", "3, 4 or 6 numbers");
+  }
+
+  // Appends the first `attribute.width` of `low` to `high` numbers (0 where there are fewer); returns how many.
+  size_t read_numbers(Words& words, std::string_view keyword, size_t low, size_t high, Attribute& attribute) {
+    std::array<float, 6> value{};
+    size_t count = 0;
+    while (count < high && !words.at_end()) {
+      if (!words.number(value[count])) fail(keyword, words.peek(), "is no number", "a number such as -1.5e-3");
+      ++count;
+    }
+    if (count < low || !words.at_end()) {
+      std::string allowed = low == high ? std::to_string(low) : std::to_string(low) + " to " + std::to_string(high);
+      if (count < low) fail(keyword, "", std::string("has ") + std::to_string(count) + " numbers", allowed + " numbers");
+      fail(keyword, words.peek(), "is one number too many", allowed + " numbers");
+    }
+    attribute.values.insert(attribute.values.end(), value.begin(), value.begin() + static_cast<ptrdiff_t>(attribute.width));
+    return count;
+  }
+
+  void read_face(Words& words) {
+    uint32_t first = 0, previous = 0;
+    size_t count = 0;
+    for (; !words.at_end(); ++count) {
+      uint32_t vertex = vertex_of(read_corner(words));
+      if (count >= 2) mesh_.indices.insert(mesh_.indices.end(), {first, previous, vertex});
+      if (count == 0) first = vertex;
+      previous = vertex;
+    }
+    if (count < 3) fail("f", "", std::string("has ") + std::to_string(count) + " corners", "3 or more corners");
+  }
+
+  // v, v/t, v//n or v/t/n; a part may be left empty except the first.
+  Corner read_corner(Words& words) {
+    std::string_view text = words.rest();
+    const char *next = text.data(), *end = next + text.size();
+    Corner corner{kNone, kNone, kNone};
+    bool good = read_index(next, end, positions_, corner.position);
+    if (good && next != end && *next == '/') {
+      ++next;
+      if (next != end && !is_blank(*next) && *next != '/') good = read_index(next, end, uvs_, corner.uv);
+      if (good && next != end && *next == '/') {
+        ++next;
+        if (next != end && !is_blank(*next)) good = read_index(next, end, normals_, corner.normal);
+      }
+    }
+    if (!good || (next != end && !is_blank(*next))) {
+      fail("face corner", words.peek(), "is malformed", "v, v/t, v//n or v/t/n");
+    }
+    words.skip(static_cast<size_t>(next - text.data()));
+    return corner;
+  }
+
+  // Reads one index and counts it from 0; false if there is none.
+  bool read_index(const char*& next, const char* end, Attribute& attribute, uint32_t& result) {
+    const char* start = next;
+    bool negative = *next == '-';
+    next += negative ? 1 : 0;
+    uint64_t index = 0;
+    const char* digits = next;
+    for (; next != end && is_digit(*next); ++next) {
+      if (index <= kNone) index = 10 * index + static_cast<uint64_t>(*next - '0');
+    }
+    if (next == digits) return false;
+    uint64_t count = attribute.count();
+    if (index == 0 || index >= (negative ? count + 1 : kNone)) {
+      std::string subject = std::string(attribute.name) + " index";
+      fail(subject, {start, static_cast<size_t>(next - start)}, "is out of range", attribute.allowed(true));
+    }
+    if (!negative && index > count && index > attribute.farthest) {
+      attribute.farthest = index;
+      attribute.farthest_line = first_line_;
+    }
+    result = static_cast<uint32_t>(negative ? count - index : index - 1);
+    return true;
+  }
+
+  // The vertex of a corner, new or met before. Most often it is the latest one at its position: faces around a position
+  // are close together in a file, and so is this list in memory, whereas the hash table is a cache miss each time.
+  uint32_t vertex_of(const Corner& corner) {
+    uint64_t positions = positions_.count();
+    if (corner.position >= positions) return find_vertex(corner);
+    if (latest_.size() < positions) latest_.resize(positions, kNone);
+    uint32_t& latest = latest_[corner.position];
+    if (latest == kNone || corners_[latest] != corner) latest = find_vertex(corner);
+    return latest;
+  }
+
+  uint32_t find_vertex(const Corner& corner) {
+    auto hash = [](const Corner& c) { return hash_words(c.position, c.uv, c.normal); };
+    uint32_t fresh = static_cast<uint32_t>(corners_.size());
+    if (fresh == kNone) fail("the mesh", "", "has too many vertices", "4294967294 vertices");
+    uint32_t vertex = table_.find_or_insert(
+        hash(corner), fresh, [&](uint32_t i) { return corners_[i] == corner; },
+        [&](uint32_t i) { return hash(corners_[i]); });
+    if (vertex == fresh) corners_.push_back(corner);
+    return vertex;
+  }
+
+  // References to later lines can be judged only when all lines are read.
+  void check_references() {
+    if (!recognised_ && mesh_.report.unknown > 0) {
+      first_line_ = 1;
+      fail("this", "", "is no OBJ file: no line has a known keyword", "v, vt, vn, f, ...");
+    }
+    for (const Attribute* attribute : {&positions_, &uvs_, &normals_}) {
+      if (attribute->farthest <= attribute->count()) continue;
+      first_line_ = attribute->farthest_line;
+      fail(std::string(attribute->name) + " index", std::to_string(attribute->farthest), "is out of range",
+           attribute->allowed(false));
+    }
+  }
+
+  // Makes the vertices out of the corners. The lists are freed as soon as they are used, to keep the peak low.
+  void gather() {
+    table_ = {};
+    latest_ = {};
+    mesh_.positions = gather(positions_, &Corner::position, 0.0f);
+    mesh_.normals = gather(normals_, &Corner::normal, std::numeric_limits<float>::quiet_NaN());
+    mesh_.uvs = gather(uvs_, &Corner::uv, std::numeric_limits<float>::quiet_NaN());
+    corners_ = {};
+  }
+
+  // The values of one list per vertex, `missing` where a corner has none; empty if no corner has any.
+  std::vector<float> gather(Attribute& attribute, uint32_t Corner::*index, float missing) {
+    std::vector<float> result;
+    bool used = std::any_of(corners_.begin(), corners_.end(), [&](const Corner& c) { return c.*index != kNone; });
+    if (used) {
+      result.reserve(corners_.size() * attribute.width);
+      for (const Corner& corner : corners_) {
+        for (size_t i = 0; i < attribute.width; ++i) {
+          result.push_back(corner.*index == kNone ? missing : attribute.values[corner.*index * attribute.width + i]);
+        }
+      }
+    }
+    attribute.values = {};
+    return result;
+  }
+
+  [[noreturn]] void fail(std::string_view subject, std::string_view value, std::string_view problem,
+                         std::string_view allowed) const {
+    throw ReadError(input_.name(), {first_line_}, subject, value, problem, allowed);
+  }
+
+  static constexpr std::array<std::string_view, 7> kIgnored = {"g", "o", "s", "usemtl", "mtllib", "p", "l"};
+
+  Input input_;
+  uint64_t first_line_ = 0;
+  std::string joined_;
+  bool recognised_ = false;
+  Attribute positions_{"position", 3};
+  Attribute uvs_{"uv", 2};
+  Attribute normals_{"normal", 3};
+  std::vector<Corner> corners_;  // the distinct ones: corner i becomes vertex i
+  IndexTable table_;
+  std::vector<uint32_t> latest_;  // per position, the vertex it was used as last; kNone if unused
+  MeshData mesh_;
+};
+
+}  // namespace
+
+MeshData read_obj(const std::string& path) { return ObjReader(Input::open(path)).read(); }
+
+MeshData read_obj_text(std::string_view text, const std::string& name) {
+  return ObjReader(Input::view(text, name)).read();
+}
+
+}  // namespace accuray::mesh

@@ -1,0 +1,47 @@
+"""Cases of `accuray verify` with the real renderer: a share of them that changes with ACCURAY_TEST_SEED."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+pytest.importorskip("accuray._core", reason="the compiled module is not built")
+
+from accuray.verify import Case, all_cases, run
+
+SEED = int(os.environ.get("ACCURAY_TEST_SEED", "0"))
+SHARE = 6
+
+#: Always run: one case for each kind of light, strategy, BSDF and unit of colour.
+ALWAYS = (
+    "C1.disk-on-axis/mis",
+    "C1.disk-on-axis/light",
+    "C1.disk-on-axis/bsdf",
+    "C1.point/mis",
+    "C1.environment/mis",
+    "C1.sphere-45/mis",
+    "C2.box-0.8/mis",
+    "C2.concentric-outer-outer",
+    "C3.glass-sphere",
+    "C3.image-furnace",
+    "C4.slab-T-60",
+    "C4.into-glass-30",
+    "C4.metal-Au-60",
+    "C8.xy-D65",
+    "C8.red-lamp-xyz",
+)
+
+
+def chosen() -> list[Case]:
+    return [case for i, case in enumerate(all_cases()) if case.id in ALWAYS or (i + SEED) % SHARE == 0]
+
+
+def test_the_list_names_cases() -> None:
+    assert set(ALWAYS) <= {case.id for case in all_cases()}
+
+
+@pytest.mark.parametrize("case", chosen(), ids=lambda case: case.id)
+def test_case(case: Case) -> None:
+    report = run(quick=True, seed=SEED, only=lambda other: other.id == case.id)
+    assert report.passed, report.table()
