@@ -28,7 +28,7 @@ class Mesh:
 
 
 def quad_mesh(name: str, material: str, quads: Sequence[Quad], unit: float) -> Mesh:
-    """Mesh of quads (v0, v1, v2, v3), each split along v0-v2; ``unit`` is the length of one of their units in metres."""
+    """Mesh of quads (v0, v1, v2, v3), each split along v0-v2; ``unit`` is their unit in metres."""
     corners = np.asarray(quads, dtype=np.float64).reshape(-1, 3) * unit
     first = np.arange(0, len(corners), 4, dtype=np.int32)[:, None, None]
     split = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)

@@ -170,8 +170,14 @@ def main() -> None:
     parser.add_argument("scene", choices=SCENES)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--size", type=int, default=settings.SIZE)
+    parser.add_argument("--xml", action="store_true", help="also write mitsuba.xml, 1 sample per pixel")
     arguments = parser.parse_args()
-    print(write(build(arguments.scene), arguments.folder, arguments.size))
+    scene = build(arguments.scene)
+    print(write(scene, arguments.folder, arguments.size))
+    if arguments.xml:
+        from benchmarks.mitsuba_xml import write_xml
+
+        print(write_xml(scene, arguments.folder, arguments.size, spp=1))
 
 
 if __name__ == "__main__":

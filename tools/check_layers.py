@@ -25,9 +25,9 @@ CPP_LAYERS: dict[str, frozenset[str]] = {
     "bindings": frozenset({"kernels", "mesh", "lower", "engine"}),
 }
 
-# Python room -> the other modules of `accuray` that it may import; a name covers everything below it, and "" is the
-# public API, `import accuray` itself. `data` holds only tables, so every room may read it.
-PUBLIC = frozenset({""})
+# Python room -> the other modules of `accuray` that it may import; a name covers everything below it, and "" is
+# `import accuray` itself. Two rooms are part of the public API. `data` holds only tables, so every room may read it.
+PUBLIC = frozenset({"", "verify", "testing"})
 PYTHON_LAYERS: dict[str, frozenset[str]] = {
     "data": frozenset(),
     "scene": frozenset({"data", "_core.schema"}),
@@ -37,7 +37,7 @@ PYTHON_LAYERS: dict[str, frozenset[str]] = {
     "render": frozenset({"data", "scene", "film", "devices"}),
     "farm": PUBLIC,
     "studio": PUBLIC,
-    "verify": PUBLIC | {"data", "testing"},
+    "verify": PUBLIC | {"data"},
     "cli": PUBLIC,
     "testing": PUBLIC,
 }

@@ -15,11 +15,11 @@ step() {
   "$@" || failed+=("$name")
 }
 
-# Configures without building: clang-tidy needs to know how each file is compiled, not the results.
+# Configures the module and the tests without building them: clang-tidy needs to know how each file is compiled. SKBUILD
+# is what the Python build sets.
 configure() {
-  PATH="$PWD/$BIN:$PATH" cmake -S . -B "$DATABASE" -G Ninja --log-level=ERROR \
-    -DACCURAY_TESTS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DPython_EXECUTABLE="$PWD/$BIN/python" \
-    -Dnanobind_DIR="$("$BIN/python" -m nanobind --cmake_dir)" >/dev/null
+  PATH="$PWD/$BIN:$PATH" cmake -S . -B "$DATABASE" -G Ninja -DSKBUILD=ON -DACCURAY_TESTS=ON \
+    -DPython_EXECUTABLE="$PWD/$BIN/python" -Dnanobind_DIR="$("$BIN/python" -m nanobind --cmake_dir)" >/dev/null
 }
 
 mapfile -t cpp < <(find src -name '*.h' -o -name '*.cpp' -o -name '*.cu' | sort)

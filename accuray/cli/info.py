@@ -50,7 +50,7 @@ def image_facts(image: accuray.Image) -> Facts:
     counts = image.layers["samples"]
     facts: Facts = [
         ("image", size),
-        ("samples", sample_ranges(film)),
+        ("samples", sample_ranges(image)),
         ("per pixel", number_range(int(counts.min()), int(counts.max()))),
         ("replicates", f"{film.replicates}, samples of one number modulo {film.replicates} share one"),
         ("error", percentage(image.relative_error)),
@@ -60,7 +60,7 @@ def image_facts(image: accuray.Image) -> Facts:
     known = (
         ("scene", "scene_hash"),
         ("seed", "seed"),
-        ("exposure", "exposure"),
+        ("exposure, EV", "exposure"),
         ("white", "white_balance"),
         ("version", "version"),
         ("isa", "isa"),
@@ -99,9 +99,9 @@ def by_type(objects: Iterable[dict[str, Any]]) -> str:
     return f"{counts.total()}: " + ", ".join(f"{count} {name}" for name, count in counts.most_common())
 
 
-def sample_ranges(film: accuray.Film) -> str:
+def sample_ranges(image: accuray.Image) -> str:
     """`0:16, 32:64`, with a word where only a part of the pixels holds a range."""
-    texts = [f"{r.first}:{r.end}" + ("" if r.mask is None else " (in part)") for r in film.coverage]
+    texts = [f"{r.first}:{r.end}" + ("" if r.mask is None else " (in part)") for r in image.film.coverage]
     return ", ".join(texts) or "none"
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import math
 import shlex
 import sys
 from argparse import Namespace
+from collections.abc import Iterator
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -21,6 +23,12 @@ if TYPE_CHECKING:
 
 SUMMARY = "Render a scene to an EXR and a PNG."
 COMMAND = "accuray render"
+
+# What a mesh may lose, by its name in the image's metadata.
+LOSSES = {
+    "nonfinite_triangles": "triangles with a vertex that is not finite",
+    "degenerate_triangles": "triangles without area",
+}
 
 
 def configure(parser: Parser) -> None:
@@ -84,13 +92,19 @@ def run(options: Namespace) -> int:
             note(options, f"rendering with {arguments['threads']} threads")
             image = render(scene, options, arguments, interrupts)
             rendered = perf_counter()
+            if not image.film.coverage:
+                raise KeyboardInterrupt  # it came before any pixel had a sample
             image.metadata["command"] = shlex.join(["accuray", *sys.argv[1:]])
             png = save_pair(image, exr)
         except KeyboardInterrupt:
-            print("accuray: interrupted before the image was complete", file=sys.stderr)
+            print("accuray: interrupted before there was an image", file=sys.stderr)
             return interrupts.status
     note(options, f"rendered in {rendered - loaded:.2f} s, written in {perf_counter() - rendered:.2f} s")
-    warn_of_dropped_samples(image)
+    for text in defects(image):
+        print(
+            json.dumps({"warning": text}) if options.progress == "json" else f"accuray: warning: {text}",
+            file=sys.stderr,
+        )
     if interrupts.status:
         print("accuray: interrupted; the image so far has been written", file=sys.stderr)
     if not options.quiet:
@@ -160,11 +174,15 @@ def crop_window(options: Namespace, width: int, height: int) -> tuple[int, int, 
     return x0, y0, x1, y1
 
 
-def warn_of_dropped_samples(image: accuray.Image) -> None:
-    """Tells of samples that had no finite value: a defect, whatever the picture looks like."""
-    dropped = image.film.dropped_total
-    if dropped:
-        print(f"accuray: warning: {dropped} samples were not finite and were left out", file=sys.stderr)
+def defects(image: accuray.Image) -> Iterator[str]:
+    """Says what was left out of the image although the rest of it is fine."""
+    reports: dict[str, dict[str, Any]] = image.metadata.get("mesh_reports", {})
+    for shape, report in reports.items():
+        losses = [f"{report[key]} {what}" for key, what in LOSSES.items() if report.get(key)]
+        if losses:
+            yield f"shapes.{shape}: left out {', '.join(losses)}"
+    if image.film.dropped_total:
+        yield f"{image.film.dropped_total} samples were not finite and were left out"
 
 
 def note(options: Namespace, text: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from argparse import Namespace
 
 from .parser import Parser
@@ -19,5 +20,6 @@ def run(options: Namespace) -> int:
     """Prints the schema; both forms come from the parameter tables of the engine."""
     import accuray
 
-    print(accuray.reference() if options.reference else json.dumps(accuray.json_schema(), indent=2))
+    text = accuray.reference_markdown() if options.reference else json.dumps(accuray.json_schema(), indent=2) + "\n"
+    sys.stdout.write(text)
     return 0

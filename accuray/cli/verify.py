@@ -21,7 +21,7 @@ def configure(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Prints the report; the status is 1 if a case fails."""
-    import accuray
+    import accuray.verify
 
     report = accuray.verify.run(quick=options.quick, progress=show_progress if sys.stderr.isatty() else None)
     print(report.to_json() if options.json else report.table())

@@ -1,6 +1,7 @@
 """Scene and mesh files: one module per format, and one line for it here.
 
-Importing this package registers the mesh readers, so ``Scene.from_dict`` can take mesh files too.
+Importing this package registers the mesh readers, so ``Scene.from_dict`` can take mesh files too: the public
+``accuray.Scene`` comes from here.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from accuray.formats.reading import SceneReader, load_scene
 from accuray.scene import Scene
 from accuray.scene.meshes import MeshReader, register_reader
 
-__all__ = ["MESH_READERS", "SCENE_READERS", "load"]
+__all__ = ["MESH_READERS", "SCENE_READERS", "Scene", "load"]
 
 SCENE_READERS: dict[str, SceneReader] = {
     ".toml": toml.parse,

@@ -59,7 +59,8 @@ class Cycles:
         render.image_settings.file_format = "OPEN_EXR"
         render.image_settings.color_depth = "32"
         self.scene.view_settings.view_transform = "Raw"
-        cycles.device, cycles.use_denoising, cycles.use_adaptive_sampling, cycles.use_guiding = "CPU", False, False, False
+        cycles.device = "CPU"
+        cycles.use_denoising = cycles.use_adaptive_sampling = cycles.use_guiding = False
         cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
         cycles.light_sampling_threshold = 0.0
         cycles.pixel_filter_type = "BOX"

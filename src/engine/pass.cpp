@@ -13,35 +13,45 @@ namespace {
 // Denormals count as zero in every thread that renders: Embree asks for it, and the bits must not depend on who calls.
 void set_float_mode() { _mm_setcsr(_mm_getcsr() | 0x8040u); }
 
-// Sums of one pixel's samples.
-struct PixelSums {
-  int64_t value[16][film_channels];
-  uint32_t dropped[16];
-};
-
-void add_sample(PixelSums& sums, uint32_t replicate, const Quantized& sample) {
-  if (!sample.finite) {
-    ++sums.dropped[replicate];
-    return;
-  }
-  for (uint32_t c = 0; c < film_channels; ++c) {
-    if (!add_checked(sums.value[replicate][c], sample.value[c])) {
-      throw FilmOverflow("a pixel's sum no longer fits 64 bits: choose a larger film unit");
-    }
-  }
+[[noreturn]] void throw_overflow() {
+  throw FilmOverflow("a pixel's sum no longer fits 64 bits: choose a larger film unit");
 }
 
-void add_pixel(const FilmView& film, uint64_t pixel, uint32_t replicates, const PixelSums& sums) {
-  for (uint32_t r = 0; r < replicates; ++r) {
-    int64_t* target = film.sums + (pixel * replicates + r) * film_channels;
-    for (uint32_t c = 0; c < film_channels; ++c) {
-      if (!add_checked(target[c], sums.value[r][c])) {
-        throw FilmOverflow("a pixel's sum no longer fits 64 bits: choose a larger film unit");
+// Sums of some pixels: by pixel, replicate and channel as in FilmView.
+class PartialFilm {
+ public:
+  PartialFilm(uint32_t pixels, uint32_t replicates)
+      : replicates_(replicates), sums_(static_cast<size_t>(pixels) * replicates * film_channels), dropped_(static_cast<size_t>(pixels) * replicates) {}
+
+  void add(uint32_t pixel, uint32_t replicate, const Quantized& sample) {
+    const size_t slot = static_cast<size_t>(pixel) * replicates_ + replicate;
+    if (!sample.finite) {
+      ++dropped_[slot];
+      return;
+    }
+    bool fits = true;
+    for (uint32_t c = 0; c < film_channels; ++c) fits &= add_checked(sums_[slot * film_channels + c], sample.value[c]);
+    if (!fits) throw_overflow();
+  }
+  // Adds one of these pixels to a pixel of the film.
+  void flush(uint32_t pixel, const FilmView& film, uint64_t target) const {
+    for (uint32_t r = 0; r < replicates_; ++r) {
+      const size_t slot = static_cast<size_t>(pixel) * replicates_ + r;
+      const uint64_t film_slot = target * replicates_ + r;
+      bool fits = true;
+      for (uint32_t c = 0; c < film_channels; ++c) {
+        fits &= add_checked(film.sums[film_slot * film_channels + c], sums_[slot * film_channels + c]);
       }
+      if (!fits) throw_overflow();
+      film.dropped[film_slot] += dropped_[slot];
     }
-    film.dropped[pixel * replicates + r] += sums.dropped[r];
   }
-}
+
+ private:
+  uint32_t replicates_;
+  std::vector<int64_t> sums_;
+  std::vector<uint32_t> dropped_;
+};
 
 }  // namespace
 
@@ -91,20 +101,20 @@ bool render_tile(const SceneView& scene, const EmbreeAccel& accel, const Request
   const uint32_t bottom = std::min(top + tile_size, film.height);
   const float inverse_step = 1.0f / scene.root->film_step;
 
-  std::vector<PixelSums> sums(static_cast<size_t>(tile_size) * tile_size);
+  PartialFilm sums(tile_size * tile_size, request.replicates);
   for (uint32_t y = top; y < bottom; ++y) {
     for (uint32_t x = left; x < right; ++x) {
-      PixelSums& pixel = sums[(y - top) * tile_size + (x - left)];
+      const uint32_t pixel = (y - top) * tile_size + (x - left);
       for (uint32_t i = first; i < first + count; ++i) {
-        const Quantized sample = sample_pixel(scene, accel, request, film.x0 + x, film.y0 + y, i, inverse_step);
-        add_sample(pixel, i % request.replicates, sample);
+        sums.add(pixel, i % request.replicates,
+                 sample_pixel(scene, accel, request, film.x0 + x, film.y0 + y, i, inverse_step));
       }
       if (stop) return false;
     }
   }
   for (uint32_t y = top; y < bottom; ++y) {
     for (uint32_t x = left; x < right; ++x) {
-      add_pixel(film, static_cast<uint64_t>(y) * film.width + x, request.replicates, sums[(y - top) * tile_size + (x - left)]);
+      sums.flush((y - top) * tile_size + (x - left), film, static_cast<uint64_t>(y) * film.width + x);
     }
   }
   return true;
@@ -114,16 +124,16 @@ bool trace_rays(const SceneView& scene, const EmbreeAccel& accel, const Request&
                 const float* directions, const FilmView& film, uint32_t begin, uint32_t end, uint32_t first,
                 uint32_t count, const std::atomic<bool>& stop) {
   const float inverse_step = 1.0f / scene.root->film_step;
+  PartialFilm sums(end - begin, request.replicates);
   for (uint32_t ray = begin; ray < end; ++ray) {
     const Vec3 origin = load_vec3(origins, ray);
     const Vec3 direction = load_vec3(directions, ray);
-    PixelSums sums{};
     for (uint32_t i = first; i < first + count; ++i) {
       if (stop) return false;
-      add_sample(sums, i % request.replicates, sample_ray(scene, accel, request, origin, direction, ray, i, inverse_step));
+      sums.add(ray - begin, i % request.replicates, sample_ray(scene, accel, request, origin, direction, ray, i, inverse_step));
     }
-    add_pixel(film, ray, request.replicates, sums);
   }
+  for (uint32_t ray = begin; ray < end; ++ray) sums.flush(ray - begin, film, ray);
   return true;
 }
 

@@ -10,24 +10,21 @@ struct Type {
   using type = T;
 };
 
-template <class T, class...>
-struct FirstOf {
-  using type = T;
-};
-
 template <class... Ts>
 struct TypeList {
   static constexpr uint32_t size = sizeof...(Ts);
 };
 
-// Calls fn(Type<T>{}) for the T at position `tag` of the list; a value-initialised result if there is none.
-template <class... Ts, class Fn>
-ACCURAY_INLINE auto dispatch(TypeList<Ts...>, uint32_t tag, Fn&& fn) {
-  using Result = decltype(fn(Type<typename FirstOf<Ts...>::type>{}));
-  Result result{};
-  uint32_t position = 0;
-  ((tag == position++ ? (result = fn(Type<Ts>{}), true) : false) || ...);
-  return result;
+// Calls fn(Type<T>{}) for the T at position `tag` of the list. The lowering writes no tag beyond the list; the last type
+// answers for any that is.
+template <class T, class... Ts, class Fn>
+ACCURAY_INLINE auto dispatch(TypeList<T, Ts...>, uint32_t tag, Fn&& fn) {
+  if constexpr (sizeof...(Ts) == 0) {
+    return fn(Type<T>{});
+  } else {
+    if (tag == 0) return fn(Type<T>{});
+    return dispatch(TypeList<Ts...>{}, tag - 1, fn);
+  }
 }
 
 // Position of T in the list; the size of the list if it is not there.

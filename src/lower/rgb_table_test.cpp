@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <random>
@@ -23,8 +22,7 @@ using Rgb = std::array<double, 3>;
 
 // A CSV file of accuray/data without its comment and its column names; all but the first column, row by row.
 std::vector<std::vector<double>> read_csv(const std::string& name) {
-  std::filesystem::path root = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
-  std::ifstream file(root / "accuray" / "data" / name);
+  std::ifstream file(ACCURAY_DATA "/" + name);
   EXPECT_TRUE(file) << "cannot read " << name;
   std::vector<std::vector<double>> rows;
   std::string line, cell;
@@ -144,7 +142,7 @@ TEST(RgbTable, InterpolatedColoursComeBack) {
 }
 
 // Bits of the whole table: a change of compiler, flags or method shows here.
-TEST(RgbTable, BitsArePinned) { EXPECT_EQ(fnv1a(fixture().coefficients), 0x0u); }
+TEST(RgbTable, BitsArePinned) { EXPECT_EQ(fnv1a(fixture().coefficients), 13663896691443775627u); }
 
 TEST(RgbTable, ThreadsChangeNothing) {
   const Fixture& f = fixture();

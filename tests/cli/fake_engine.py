@@ -55,6 +55,8 @@ class FakeEngine:
         self.images: dict[str, FakeImage] = {}
         self.on_render: Callable[[dict[str, Any]], None] = lambda _: None
         self.dropped = 0
+        self.mesh_reports: dict[str, dict[str, int]] = {}
+        self.finished = True
 
     def load(self, path: Path, overrides: list[str] | None = None) -> SimpleNamespace:
         """As accuray.load; a file named broken is one."""
@@ -84,7 +86,11 @@ class FakeEngine:
         except KeyboardInterrupt:
             if arguments["on_interrupt"] != "return":
                 raise
-        return FakeImage(arguments["samples"] or (0, total), self.dropped)
+        image = FakeImage(arguments["samples"] or (0, total), self.dropped)
+        image.metadata["mesh_reports"] = self.mesh_reports
+        if not self.finished:
+            image.film.coverage.clear()
+        return image
 
     def load_image(self, path: Path) -> FakeImage:
         """As accuray.Image.load, from the images the test has put in."""

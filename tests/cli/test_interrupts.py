@@ -68,7 +68,7 @@ def test_second_signal_ends_the_writing(
     assert main(["render", "box.toml"]) == 143
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert "interrupted before the image was complete" in captured.err
+    assert "interrupted before there was an image" in captured.err
 
 
 def test_signal_while_loading_ends_without_an_image(engine: FakeEngine, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -81,6 +81,19 @@ def test_signal_while_loading_ends_without_an_image(engine: FakeEngine, monkeypa
     assert main(["render", "box.toml"]) == 130
     assert engine.rendered == []
     assert list(Path().iterdir()) == []
+
+
+def test_interrupt_before_the_first_sample_writes_nothing(
+    engine: FakeEngine, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(_: dict[str, Any]) -> None:
+        engine.finished = False
+        signal.raise_signal(signal.SIGINT)
+
+    engine.on_render = interrupt
+    assert main(["render", "box.toml"]) == 130
+    assert list(Path().iterdir()) == []
+    assert "interrupted before there was an image" in capsys.readouterr().err
 
 
 def test_signal_between_two_steps_ends_the_next() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from fake_engine import FakeEngine, FakeImage
@@ -64,7 +63,7 @@ def test_info_of_a_broken_scene_ends_with_2(engine: FakeEngine) -> None:
 
 def test_schema_and_reference(monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
     monkeypatch.setattr(accuray, "json_schema", lambda: {"type": "object"}, raising=False)
-    monkeypatch.setattr(accuray, "reference", lambda: "# Reference", raising=False)
+    monkeypatch.setattr(accuray, "reference_markdown", lambda: "# Reference\n", raising=False)
     assert main(["schema"]) == 0
     assert json.loads(capsys.readouterr().out) == {"type": "object"}
     assert main(["schema", "--reference"]) == 0
@@ -95,7 +94,7 @@ def test_verify_ends_with_1_if_a_case_fails(
         asked.append(quick)
         return Report(passed)
 
-    monkeypatch.setattr(accuray, "verify", SimpleNamespace(run=run), raising=False)
+    monkeypatch.setattr("accuray.verify.run", run)
     assert main(["verify"]) == status
     assert capsys.readouterr().out == "case expected measured\n"
     assert main(["verify", "--json", "--quick"]) == status

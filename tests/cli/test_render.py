@@ -138,7 +138,18 @@ def test_verbose_shows_where_an_internal_error_is(engine: FakeEngine, capsys: py
 def test_dropped_samples_are_told(engine: FakeEngine, capsys: pytest.CaptureFixture[str]) -> None:
     engine.dropped = 3
     assert main(["render", "box.toml"]) == 0
-    assert "3 samples were not finite" in capsys.readouterr().err
+    assert "accuray: warning: 3 samples were not finite" in capsys.readouterr().err
+    assert main(["render", "box.toml", "--progress", "json"]) == 0
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert json.loads(last) == {"warning": "3 samples were not finite and were left out"}
+
+
+def test_losses_of_meshes_are_told(engine: FakeEngine, capsys: pytest.CaptureFixture[str]) -> None:
+    engine.mesh_reports = {"a": {"degenerate_triangles": 0}, "b": {"degenerate_triangles": 2, "nonfinite_triangles": 1}}
+    assert main(["render", "box.toml"]) == 0
+    err = capsys.readouterr().err
+    assert "shapes.b: left out 1 triangles with a vertex that is not finite, 2 triangles without area" in err
+    assert "shapes.a" not in err
 
 
 def test_thread_flag_beats_variable_beats_machine(engine: FakeEngine, monkeypatch: pytest.MonkeyPatch) -> None:

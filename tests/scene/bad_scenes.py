@@ -37,7 +37,9 @@ class BadScene:
         return folder / self.main
 
 
-def scene(name: str, text: str, *expected: str, files: dict[str, str | bytes] | None = None, **more: object) -> BadScene:
+def scene(
+    name: str, text: str, *expected: str, files: dict[str, str | bytes] | None = None, **more: object
+) -> BadScene:
     """A case whose scene is ``accuray = 1`` and then ``text``, whose first line is line 2."""
     return BadScene(name, {"scene.toml": f"accuray = 1\n{text}", **(files or {})}, expected, **more)  # type: ignore[arg-type]
 
@@ -139,12 +141,16 @@ NAMES = [
         "scene.toml:6: shapes.s.material",
         '"sun" is a light, not a material',
     ),
-    scene("material-missing", '[shapes.s]\ntype = "sphere"\n', "scene.toml:2: shapes.s", "has no material", "material ="),
+    scene(
+        "material-missing", '[shapes.s]\ntype = "sphere"\n', "scene.toml:2: shapes.s", "has no material", "material ="
+    ),
     scene("material-number", '[shapes.s]\ntype = "sphere"\nmaterial = 3\n', "scene.toml:4: shapes.s.material: 3"),
     scene("instance-of-none", '[shapes.i]\ntype = "instance"\nof = "x"\n', "scene.toml:4: shapes.i.of", '"x"', "i"),
     scene("instance-lacks-of", '[shapes.i]\ntype = "instance"\n', "scene.toml:2: shapes.i", "`of`"),
     scene("instance-empty", '[shapes.i]\ntype = "instance"\nof = []\n', "scene.toml:4: shapes.i.of", "at least one"),
-    scene("instance-of-itself", '[shapes.i]\ntype = "instance"\nof = ["i"]\n', "scene.toml:4: shapes.i.of", "one level"),
+    scene(
+        "instance-of-itself", '[shapes.i]\ntype = "instance"\nof = ["i"]\n', "scene.toml:4: shapes.i.of", "one level"
+    ),
     scene(
         "instance-of-no-prototype",
         '[materials.m]\ntype = "diffuse"\n[shapes.s]\ntype = "sphere"\nmaterial = "m"\n'
@@ -156,7 +162,9 @@ NAMES = [
 ]
 
 VALUES = [
-    scene("width-zero", "[film]\nwidth = 0\n", "scene.toml:3: film.width: 0 is out of range", "1 to 65536", "width = 0"),
+    scene(
+        "width-zero", "[film]\nwidth = 0\n", "scene.toml:3: film.width: 0 is out of range", "1 to 65536", "width = 0"
+    ),
     scene("width-huge", "[film]\nwidth = 1000000000\n", "film.width: 1000000000 is out of range", "1 to 65536"),
     scene("width-float", "[film]\nwidth = 64.0\n", "film.width: 64.0 is not a whole number", "1 to 65536"),
     scene("width-true", "[film]\nwidth = true\n", "film.width: true is not a whole number"),
@@ -167,8 +175,12 @@ VALUES = [
     scene("exposure-1e400", "[film]\nexposure = 1e400\n", "film.exposure: inf is not a finite number", "1e400"),
     scene("exposure-list", "[film]\nexposure = [1]\n", "film.exposure: [1] is not a number"),
     scene("spp-negative", "[render]\nspp = -1\n", "render.spp: -1 is out of range", "1 to"),
-    scene("enum", '[integrator]\ntype = "path"\nstrategy = "mist"\n', "integrator.strategy", '"mist"', '"mis", "light"'),
-    scene("fov-unit", '[camera]\ntype = "perspective"\nfov = "35 mm"\n', "camera.fov", '"35 mm"', "wrong unit", "15 deg"),
+    scene(
+        "enum", '[integrator]\ntype = "path"\nstrategy = "mist"\n', "integrator.strategy", '"mist"', '"mis", "light"'
+    ),
+    scene(
+        "fov-unit", '[camera]\ntype = "perspective"\nfov = "35 mm"\n', "camera.fov", '"35 mm"', "wrong unit", "15 deg"
+    ),
     scene("fov-range", '[camera]\ntype = "perspective"\nfov = 180\n', "scene.toml:4: camera.fov: 180", "179.99 deg"),
     scene("fov-no-unit", '[camera]\ntype = "perspective"\nfov = "35"\n', "camera.fov", '"35" has no unit'),
     scene("fov-word", '[camera]\ntype = "perspective"\nfov = "wide"\n', "camera.fov", '"wide" is not a number'),
@@ -193,11 +205,21 @@ VALUES = [
     ),
     scene("length-unit", 'length_unit = "inch"\n', "scene.toml:2: length_unit", '"inch"', "m, mm, cm"),
     scene("radius-lumen", '[shapes.s]\ntype = "sphere"\nradius = "3 lm"\n', "shapes.s.radius", '"3 lm"', "35 mm"),
-    scene("radius-unit", '[shapes.s]\ntype = "sphere"\nradius = "3 furlong"\n', "shapes.s.radius", "furlong", "known: m"),
+    scene(
+        "radius-unit", '[shapes.s]\ntype = "sphere"\nradius = "3 furlong"\n', "shapes.s.radius", "furlong", "known: m"
+    ),
     scene("radius-negative", '[shapes.s]\ntype = "sphere"\nradius = -1\n', "shapes.s.radius: -1", "at least"),
-    scene("scale-list", '[shapes.s]\ntype = "sphere"\ntransform = {scale = [1, 2, 3]}\n', "transform.scale", "not uniform"),
-    scene("scale-zero", '[shapes.s]\ntype = "sphere"\ntransform = {scale = 0}\n', "shapes.s.transform.scale: 0", "than 0"),
-    scene("axis-zero", '[shapes.s]\ntype = "sphere"\ntransform = {rotate = {axis = [0, 0, 0], angle = 3}}\n', "rotate.axis"),
+    scene(
+        "scale-list", '[shapes.s]\ntype = "sphere"\ntransform = {scale = [1, 2, 3]}\n', "transform.scale", "not uniform"
+    ),
+    scene(
+        "scale-zero", '[shapes.s]\ntype = "sphere"\ntransform = {scale = 0}\n', "shapes.s.transform.scale: 0", "than 0"
+    ),
+    scene(
+        "axis-zero",
+        '[shapes.s]\ntype = "sphere"\ntransform = {rotate = {axis = [0, 0, 0], angle = 3}}\n',
+        "rotate.axis",
+    ),
     scene(
         "matrix-shear",
         '[shapes.s]\ntype = "sphere"\ntransform = {matrix = [1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n',
@@ -205,8 +227,12 @@ VALUES = [
         "shears",
         "rotation times one scale",
     ),
-    scene("matrix-short", '[shapes.s]\ntype = "sphere"\ntransform = {matrix = [1, 2]}\n', "transform.matrix", "16 numbers"),
-    scene("transform-key", '[shapes.s]\ntype = "sphere"\ntransform = {move = [1, 2, 3]}\n', "transform.move", "translate"),
+    scene(
+        "matrix-short", '[shapes.s]\ntype = "sphere"\ntransform = {matrix = [1, 2]}\n', "transform.matrix", "16 numbers"
+    ),
+    scene(
+        "transform-key", '[shapes.s]\ntype = "sphere"\ntransform = {move = [1, 2, 3]}\n', "transform.move", "translate"
+    ),
     scene("transform-word", '[shapes.s]\ntype = "sphere"\ntransform = "up"\n', 'shapes.s.transform: "up"', "translate"),
 ]
 
@@ -229,11 +255,15 @@ SPECTRA = [
     material("spectrum-lonely-values", "{ values = [1, 2] }", "values", "without `wavelengths`"),
     material("spectrum-lonely-column", '{ value = 1, column = "a" }', "column", "only allowed beside `file`"),
     material("spectrum-lengths", "{ wavelengths = [400, 500], values = [1] }", "values", "has 1 numbers", "2"),
-    material("spectrum-order", "{ wavelengths = [500, 400], values = [1, 1] }", "wavelengths[1]", "400 nm comes after 500"),
+    material(
+        "spectrum-order", "{ wavelengths = [500, 400], values = [1, 1] }", "wavelengths[1]", "400 nm comes after 500"
+    ),
     material("spectrum-twice", "{ wavelengths = [500, 500], values = [1, 1] }", "500 nm is there twice", "rising"),
     material("spectrum-micrometres", "{ wavelengths = [0.4, 0.7], values = [1, 1] }", "0.4 to 0.7 nm", "360 to 830"),
     material("spectrum-one-row", "{ wavelengths = [500], values = [1] }", "has 1 wavelengths", "at least 2"),
-    material("spectrum-high", "{ wavelengths = [400, 500], values = [1, 2] }", "values[1]", "2.0 at 500 nm is out of range"),
+    material(
+        "spectrum-high", "{ wavelengths = [400, 500], values = [1, 2] }", "values[1]", "2.0 at 500 nm is out of range"
+    ),
     material("extrapolate", '{ value = 1, extrapolate = "hold" }', "extrapolate", "for tables of wavelengths"),
     emission("negative", "-1", "-1 is out of range", "at least 0"),
     emission("illuminant", '"D66"', '"D66" is not a known spectrum or illuminant', 'did you mean "D65"'),
@@ -252,9 +282,16 @@ SPECTRA = [
         "W/(sr nm)",
     ),
     scene("metal", '[materials.m]\ntype = "conductor"\nmetal = "Gold"\n', "materials.m.metal", '"Gold"', "Au, "),
-    scene("metal-none", '[materials.m]\ntype = "conductor"\n', "scene.toml:2: materials.m", "exactly one of metal | eta with k"),
+    scene(
+        "metal-none",
+        '[materials.m]\ntype = "conductor"\n',
+        "scene.toml:2: materials.m",
+        "exactly one of metal | eta with k",
+    ),
     scene("metal-half", '[materials.m]\ntype = "conductor"\neta = 1.5\n', "scene.toml:2: materials.m: lacks `k`"),
-    scene("glass", '[materials.m]\ntype = "dielectric"\nior = "BK7"\n', "materials.m.ior", '"BK7"', 'did you mean "N-BK7"'),
+    scene(
+        "glass", '[materials.m]\ntype = "dielectric"\nior = "BK7"\n', "materials.m.ior", '"BK7"', 'did you mean "N-BK7"'
+    ),
     scene("ior-zero", '[materials.m]\ntype = "dielectric"\nior = 0\n', "materials.m.ior: 0 is out of range", " to 20"),
     scene("ior-rgb", '[materials.m]\ntype = "dielectric"\nior = [1, 1, 1]\n', "materials.m.ior", "RGB"),
     scene(
@@ -269,7 +306,9 @@ SPECTRA = [
         "materials.m.ior.sellmeier",
         "2 B and 1 C",
     ),
-    scene("unused-spectrum", "[spectra.x]\nwavelengths = [500, 400]\nvalues = [1, 1]\n", "spectra.x.wavelengths", "400 nm"),
+    scene(
+        "unused-spectrum", "[spectra.x]\nwavelengths = [500, 400]\nvalues = [1, 1]\n", "spectra.x.wavelengths", "400 nm"
+    ),
     scene(
         "named-spectrum",
         '[spectra.x]\nvalue = 1.5\n[materials.m]\ntype = "diffuse"\nreflectance = "x"\n',
@@ -312,7 +351,9 @@ FILES = [
 ]
 
 INCLUDES = [
-    scene("include-itself", 'include = ["scene.toml"]\n', "scene.toml:2: include[0]", "includes itself", "scene.toml ->"),
+    scene(
+        "include-itself", 'include = ["scene.toml"]\n', "scene.toml:2: include[0]", "includes itself", "scene.toml ->"
+    ),
     scene(
         "include-loop",
         'include = ["b.toml"]\n',
@@ -331,7 +372,9 @@ INCLUDES = [
         "32 levels",
         files={f"f{i}.toml": f'accuray = 1\ninclude = ["f{i + 1}.toml"]\n' for i in range(40)},
     ),
-    scene("include-no-version", 'include = ["b.toml"]\n', "b.toml", "has no format version", files={"b.toml": "a = 1\n"}),
+    scene(
+        "include-no-version", 'include = ["b.toml"]\n', "b.toml", "has no format version", files={"b.toml": "a = 1\n"}
+    ),
     scene(
         "include-bad-value",
         'include = ["b.toml"]\n[film]\nheight = 3\n',
@@ -365,7 +408,13 @@ MESHES = [
         "scene.toml:9: shapes.s.positions[1]: [1, 0] is not a row of 3 numbers",
         "[1, 0],",
     ),
-    mesh("word", 'positions = [[0, 0, "0 m"]]\nfaces = []\n', "scene.toml:7: shapes.s.positions[0][2]", '"0 m"', "numbers"),
+    mesh(
+        "word",
+        'positions = [[0, 0, "0 m"]]\nfaces = []\n',
+        "scene.toml:7: shapes.s.positions[0][2]",
+        '"0 m"',
+        "numbers",
+    ),
     mesh("huge-integer", f"positions = [[0, 0, {'9' * 400}]]\nfaces = []\n", "shapes.s.positions", "too large"),
     mesh(
         "normals-count",
@@ -380,7 +429,14 @@ MESHES = [
         "shapes.s.normals[1][2]: nan",
     ),
     mesh("file-missing", 'file = "a.obj"\n', "scene.toml:7: shapes.s.file", '"a.obj" does not exist'),
-    mesh("file-type", 'file = "a.stl"\n', "scene.toml:7: shapes.s.file", '"a.stl"', ".obj, .ply", files={"a.stl": "solid"}),
+    mesh(
+        "file-type",
+        'file = "a.stl"\n',
+        "scene.toml:7: shapes.s.file",
+        '"a.stl"',
+        ".obj, .ply",
+        files={"a.stl": "solid"},
+    ),
     mesh("file-up", 'file = "../a.obj"\n', "scene.toml:7: shapes.s.file", "leads outside"),
     mesh(
         "file-normals",

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from scene_support import plain_tables
+
 from accuray.scene import schema
-from scene_tables import plain_tables
 
 
 @pytest.fixture(autouse=True)

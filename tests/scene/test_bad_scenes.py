@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from bad_scenes import BAD_SCENES, BadScene
+from scene_support import has_core
+
 from accuray.formats import load
 from accuray.scene import SceneError
-from bad_scenes import BAD_SCENES, BadScene
-from scene_tables import has_core
 
 
 def test_table_is_large_and_its_names_differ() -> None:

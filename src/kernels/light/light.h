@@ -28,7 +28,7 @@ inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 
 
 // Below this solid angle (sr) a flat light is sampled by area: the density per solid angle hardly varies over it then,
 // and the spherical formulas lose digits as 1e-7 / solid angle.
-constexpr float least_spherical = 0.02f;
+constexpr float least_spherical = 0.3f;
 constexpr float most_spherical = 6.2f;
 
 // Rough solid angle of a flat light around `middle`; decides how it is sampled, so it must be the same function of the

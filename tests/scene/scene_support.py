@@ -1,4 +1,4 @@
-"""Where the tests of the scene description take the parameter tables from."""
+"""What the tests of the scene description share: where the parameter tables come from, how hypothesis runs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+from hypothesis import settings
+
 from accuray.scene import schema
+
+STEADY = settings(max_examples=50, deadline=None, derandomize=True)
+"""The same examples in every run, however slow the machine is."""
 
 FIXTURE = Path(__file__).with_name("schema_fixture.json")
 
