@@ -30,7 +30,7 @@ lint: ## check style, types, layers, sizes
 
 bench: ## measure speed and time-to-error, beside the peers that are installed
 	@tools/bootstrap.sh build test
-	@$(BIN)/python benchmarks/run.py
+	@$(BIN)/python -m benchmarks
 
 clean: ## remove everything that was built; the environments stay
 	rm -rf build dist $(OUT) .pytest_cache .mypy_cache .ruff_cache .hypothesis

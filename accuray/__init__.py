@@ -11,27 +11,35 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from accuray.version import __version__
+from accuray.data.version import __version__
 
 if TYPE_CHECKING:
-    from accuray.film import Image, ImageError
+    from accuray.devices import build_info, cache_folder
+    from accuray.film import Image, ImageError, probe_writable
     from accuray.formats import load
     from accuray.render import Progress, Radiance, radiance, render
     from accuray.scene import Scene, SceneError, Spectrum
+    from accuray.scene.jsonschema import json_schema
+    from accuray.scene.reference import reference_markdown
 
 # Where each public name lives; a module is imported when one of its names is first used, so that `accuray --version`
 # and the other small commands start at once.
 _HOMES = {
     "Image": "accuray.film",
     "ImageError": "accuray.film",
-    "load": "accuray.formats",
     "Progress": "accuray.render",
     "Radiance": "accuray.render",
-    "radiance": "accuray.render",
-    "render": "accuray.render",
-    "Scene": "accuray.scene",
+    "Scene": "accuray.formats",
     "SceneError": "accuray.scene",
     "Spectrum": "accuray.scene",
+    "build_info": "accuray.devices",
+    "cache_folder": "accuray.devices",
+    "json_schema": "accuray.scene.jsonschema",
+    "load": "accuray.formats",
+    "probe_writable": "accuray.film",
+    "radiance": "accuray.render",
+    "reference_markdown": "accuray.scene.reference",
+    "render": "accuray.render",
 }
 
 __all__ = [
@@ -43,8 +51,13 @@ __all__ = [
     "SceneError",
     "Spectrum",
     "__version__",
+    "build_info",
+    "cache_folder",
+    "json_schema",
     "load",
+    "probe_writable",
     "radiance",
+    "reference_markdown",
     "render",
 ]
 

@@ -41,9 +41,7 @@ def frame_around(outer: Quad, hole: Quad) -> list[Quad]:
     return [[outer[a], outer[b], hole[b], hole[a]] for a, b in around]
 
 
-def bumpy_sphere(
-    name: str, material: str, center: Sequence[float], radius: float, segments: int, rings: int
-) -> Mesh:
+def bumpy_sphere(name: str, material: str, center: Sequence[float], radius: float, segments: int, rings: int) -> Mesh:
     """A closed sphere with bumps: 2 * segments * rings triangles, exact smooth normals, latitude-longitude UVs.
 
     The radius in direction d is ``radius * (1 + f(d))`` with f a sum of products of sines; the normal is the gradient

@@ -16,7 +16,7 @@ def write_xml(scene: Scene, folder: Path, size: int, spp: int) -> Path:
     _sensor(root, scene, size, spp)
     for name, spectrum in scene.reflectances.items():
         bsdf = SubElement(root, "bsdf", type="diffuse", id=name)
-        SubElement(bsdf, "spectrum", name="reflectance", value=_pairs(spectrum, hold=True))
+        SubElement(bsdf, "spectrum", name="reflectance", value=_pairs(spectrum))
     for mesh in scene.meshes:
         shape = SubElement(root, "shape", type="ply")
         SubElement(shape, "string", name="filename", value=f"{mesh.name}.ply")
@@ -24,7 +24,7 @@ def write_xml(scene: Scene, folder: Path, size: int, spp: int) -> Path:
         SubElement(shape, "ref", id=mesh.material)
         if mesh.material == scene.emitter:
             emitter = SubElement(shape, "emitter", type="area")
-            SubElement(emitter, "spectrum", name="radiance", value=_pairs(scene.emission, hold=False))
+            SubElement(emitter, "spectrum", name="radiance", value=_pairs(scene.emission))
     indent(root)
     path = folder / "mitsuba.xml"
     ElementTree(root).write(path)
@@ -46,9 +46,7 @@ def _sensor(root: Element, scene: Scene, size: int, spp: int) -> None:
     SubElement(film, "rfilter", type="box")
 
 
-def _pairs(spectrum: Spectrum, hold: bool) -> str:
-    """Mitsuba's ``wavelength:value`` list; ``hold`` repeats the end values at 360 and 830 nm (it has 0 outside)."""
-    pairs = list(zip(spectrum.wavelengths, spectrum.values, strict=True))
-    if hold:
-        pairs = [(360.0, pairs[0][1]), *pairs, (830.0, pairs[-1][1])]
+def _pairs(spectrum: Spectrum) -> str:
+    """Mitsuba's ``wavelength:value`` list."""
+    pairs = zip(spectrum.wavelengths, spectrum.values, strict=True)
     return ", ".join(f"{wavelength}:{value}" for wavelength, value in pairs)

@@ -7,6 +7,7 @@ linear Rec.709 colour of it, meshes. ``scene.toml`` is AccuRay's own form of the
 import argparse
 import csv
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Any
 from benchmarks import settings
 from benchmarks.geometry import Mesh, bumpy_sphere, frame_around, quad_mesh, write_ply
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parents[1] / "accuray" / "data"
 MILLIMETRE = 0.001
 INLINE_TRIANGLES = 1000
 
@@ -33,6 +34,7 @@ RGB = {
 integral(ybar), the lamp being dark outside 400-700 nm."""
 
 LAMP_REFLECTANCE = 0.78
+VISIBLE = (360.0, 830.0)
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class Scene:
-    """Meshes in metres and what they are made of. Reflectances hold their end values; the emission is 0 outside."""
+    """Meshes in metres and what they are made of. Reflectances cover 360-830 nm; emission ends with its table."""
 
     name: str
     meshes: tuple[Mesh, ...]
@@ -78,12 +80,26 @@ def build(name: str) -> Scene:
         meshes.append(bumpy_sphere("sphere", "white", (0.278, 0.2, 0.28), 0.16, *size))
     columns = _read_columns(DATA / "cornell_box_reflectance.csv")
     paints = {
-        paint: Spectrum(columns["wavelength_nm"], columns[paint], RGB[paint]) for paint in ("white", "red", "green")
+        paint: _hold(Spectrum(columns["wavelength_nm"], columns[paint], RGB[paint]))
+        for paint in ("white", "red", "green")
     }
-    paints["lamp"] = Spectrum((400.0, 700.0), (LAMP_REFLECTANCE, LAMP_REFLECTANCE), RGB["lamp"])
+    paints["lamp"] = Spectrum(VISIBLE, (LAMP_REFLECTANCE, LAMP_REFLECTANCE), RGB["lamp"])
     light = _read_columns(DATA / "cornell_box_light.csv")
     emission = Spectrum(light["wavelength_nm"], light["relative_radiance"], RGB["emission"])
     return Scene(name, tuple(meshes), paints, emission, "lamp", _camera(page["camera"]))
+
+
+def _hold(spectrum: Spectrum) -> Spectrum:
+    """Continue a table of even steps with its end values over the visible range, in the same steps.
+
+    Every renderer then sees the same reflectance there, and Mitsuba its faster, evenly spaced kind of table.
+    """
+    first, last = spectrum.wavelengths[0], spectrum.wavelengths[-1]
+    step = spectrum.wavelengths[1] - first
+    before, after = math.ceil((first - VISIBLE[0]) / step), math.ceil((VISIBLE[1] - last) / step)
+    wavelengths = tuple(first + step * k for k in range(-before, len(spectrum.values) + after))
+    values = (spectrum.values[0],) * before + spectrum.values + (spectrum.values[-1],) * after
+    return Spectrum(wavelengths, values, spectrum.rgb)
 
 
 def _camera(camera: dict[str, Any]) -> dict[str, Any]:

@@ -47,7 +47,7 @@ def measure(work: Path, peer: str = "accuray", rounds: int = settings.THREAD_ROU
 
 def main() -> int:
     """Measure AccuRay, or the peer named on the command line."""
-    found = measure(Path("out/bench"), *sys.argv[1:2])
+    found = measure(Path("out/bench"), sys.argv[1] if len(sys.argv) > 1 else "accuray")
     print(json.dumps(found))
     print(report.table(found, COLUMNS))
     return 1 if any("error" in row for row in found) else 0

@@ -97,16 +97,13 @@ def run(options: Namespace) -> int:
             image.metadata["command"] = shlex.join(["accuray", *sys.argv[1:]])
             png = save_pair(image, exr)
         except KeyboardInterrupt:
-            print("accuray: interrupted before there was an image", file=sys.stderr)
+            warn(options, "interrupted before there was an image")
             return interrupts.status
     note(options, f"rendered in {rendered - loaded:.2f} s, written in {perf_counter() - rendered:.2f} s")
     for text in defects(image):
-        print(
-            json.dumps({"warning": text}) if options.progress == "json" else f"accuray: warning: {text}",
-            file=sys.stderr,
-        )
+        warn(options, text)
     if interrupts.status:
-        print("accuray: interrupted; the image so far has been written", file=sys.stderr)
+        warn(options, "interrupted; the image so far has been written")
     if not options.quiet:
         print(exr, png, sep="\n")
     return interrupts.status
@@ -183,6 +180,11 @@ def defects(image: accuray.Image) -> Iterator[str]:
             yield f"shapes.{shape}: left out {', '.join(losses)}"
     if image.film.dropped_total:
         yield f"{image.film.dropped_total} samples were not finite and were left out"
+
+
+def warn(options: Namespace, text: str) -> None:
+    """Prints a warning to standard error, as an object of its own where programs read JSON there."""
+    print(json.dumps({"warning": text}) if options.progress == "json" else f"accuray: warning: {text}", file=sys.stderr)
 
 
 def note(options: Namespace, text: str) -> None:

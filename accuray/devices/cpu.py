@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -62,3 +64,20 @@ def load(scene: Scene) -> LoadedScene:
 
     block, reports = lower(scene)
     return LoadedScene(scene, engine.LoadedScene(block), reports)
+
+
+@cache
+def build_info() -> dict[str, str]:
+    """What the bits of a picture depend on besides the scene: instruction set, processor's maker, Embree's version."""
+    from accuray._core import engine
+
+    return {"isa": engine.ISA, "cpu_vendor": _cpu_vendor(), "embree": engine.EMBREE_VERSION}
+
+
+def _cpu_vendor() -> str:
+    """The processor's maker as it names itself; "unknown" where the system does not tell."""
+    try:
+        with Path("/proc/cpuinfo").open(encoding="utf-8") as lines:
+            return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("vendor_id")), "unknown")
+    except OSError:
+        return "unknown"

@@ -7,7 +7,7 @@ want: an RGB array, error layers, regions with confidence intervals, EXR and PNG
 from __future__ import annotations
 
 from .coverage import BLOCK, SampleRange
-from .errors import FilmOverflowError, ImageError, MergeError
+from .errors import FilmOverflowError, ImageError, ImageWriteError, MergeError
 from .estimates import RegionEstimate, pixel_estimates, region_estimate, relative_error
 from .files import atomic_write, probe_writable
 from .film import DEFAULT_STEP, XYZA, Film
@@ -25,6 +25,7 @@ __all__ = [
     "FilmOverflowError",
     "Image",
     "ImageError",
+    "ImageWriteError",
     "Layers",
     "MergeError",
     "RegionEstimate",

@@ -83,7 +83,7 @@ def check_ranges(ranges: Iterable[tuple[int, int, Mask | None]], shape: tuple[in
 
 
 def normalise(ranges: Iterable[tuple[int, int, Mask | None]], shape: tuple[int, int]) -> list[SampleRange]:
-    """The canonical form: sorted, disjoint, adjacent ranges of equal masks joined, masks in their shortest form.
+    """The canonical form: ranges sorted, without common samples, joined where masks agree; masks as short as possible.
 
     Args:
         ranges: entries (first, end, mask) in any order.

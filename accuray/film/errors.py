@@ -19,6 +19,18 @@ class ImageError(ValueError):
         super().__init__(reason if self.path is None else f"{self.path}: {reason}")
 
 
+class ImageWriteError(ImageError, OSError):
+    """The file system refused a file: also an `OSError`, with its `errno` where there is one."""
+
+    def __init__(self, reason: str, path: str | os.PathLike[str], cause: OSError | None = None) -> None:
+        super().__init__(f"cannot be written: {reason}", path)
+        self.errno = None if cause is None else cause.errno
+        self.strerror = reason
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.reason}"
+
+
 class MergeError(ImageError):
     """Films that must not be added: another scene, another setting, or samples that both of them hold."""
 

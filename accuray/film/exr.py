@@ -106,7 +106,7 @@ def _metadata_header(film: Film, metadata: Mapping[str, Any], omit_time: bool) -
         "accuray:sceneHash": _text(metadata.get("scene_hash", "")),
         "accuray:seed": _text(metadata.get("seed", "")),
         "accuray:sampleStart": str(first),
-        "accuray:sampleCount": str(_distinct_samples(film)),
+        "accuray:sampleCount": str(sum(r.end - r.first for r in film.coverage)),
         "accuray:cmd": _text(metadata.get("command", "")),
         "accuray:dropped": str(film.dropped_total),
     }
@@ -117,15 +117,6 @@ def _metadata_header(film: Film, metadata: Mapping[str, Any], omit_time: bool) -
     if metadata.get(_TIME) is not None and not omit_time:
         header["accuray:renderTime"] = np.array([metadata[_TIME]], dtype=np.float64)
     return header
-
-
-def _distinct_samples(film: Film) -> int:
-    """How many sample indices the film holds of at least one pixel."""
-    count, reached = 0, 0
-    for r in film.coverage:
-        count += max(0, r.end - max(r.first, reached))
-        reached = max(reached, r.end)
-    return count
 
 
 def _text(value: object) -> str:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .errors import ImageError
+from .errors import ImageWriteError
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer
@@ -31,8 +31,8 @@ def atomic_write(path: str | os.PathLike[str], data: Buffer) -> None:
         data: the content.
 
     Raises:
-        ImageError: the folder is missing, the name is taken by something that is not a file, or a write, flush or
-            rename failed (the OSError is its cause). The temporary file is removed and an old file left as it was.
+        ImageWriteError: the folder is missing, the name is taken by something that is not a file, or a write, flush
+            or rename failed (the OSError is its cause). The temporary file is removed and an old file left as it was.
     """
     final = _writable_target(path)
     temporary = _temporary_name(final)
@@ -51,7 +51,7 @@ def probe_writable(path: str | os.PathLike[str]) -> None:
     """Checks, before hours are spent, that `atomic_write(path, ...)` has a folder it may create files in.
 
     Raises:
-        ImageError: as `atomic_write` would.
+        ImageWriteError: as `atomic_write` would.
     """
     final = _writable_target(path)
     temporary = _temporary_name(final)
@@ -68,11 +68,11 @@ def _writable_target(path: str | os.PathLike[str]) -> Path:
     except FileNotFoundError:
         mode = None
     except OSError as error:
-        raise ImageError(f"cannot be written: {error.strerror}", path) from error
+        raise ImageWriteError(error.strerror or str(error), path, error) from error
     if mode is not None and not stat.S_ISREG(mode):
-        raise ImageError("cannot be written: it exists and is not a regular file", path)
+        raise ImageWriteError("it exists and is not a regular file", path)
     if not final.parent.is_dir():
-        raise ImageError(f"cannot be written: there is no folder {final.parent}", path)
+        raise ImageWriteError(f"there is no folder {final.parent}", path)
     return final
 
 
@@ -103,8 +103,8 @@ def _flush_folder(folder: Path) -> None:
 
 @contextlib.contextmanager
 def _explained(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Turns an OSError into an ImageError that names the path."""
+    """Turns an OSError into an ImageWriteError that names the path."""
     try:
         yield
     except OSError as error:
-        raise ImageError(f"cannot be written: {error.strerror or error}", path) from error
+        raise ImageWriteError(error.strerror or str(error), path, error) from error

@@ -26,6 +26,7 @@ from .png import encode_png, shrink
 EXTENSIONS = (".exr", ".png", ".npy")
 _NOTEBOOK_WIDTH = 960
 _SAME_SCENE = ("scene_hash", "seed", "sampling_version")
+_SUMMED = ("render_seconds", "rays")
 _SAME_LEVEL = ("version", "isa", "cpu_vendor", "mixed")
 
 
@@ -39,7 +40,7 @@ class Image:
         film: the exact sums, raw XYZ and alpha.
         metadata: plain JSON-like values. Known keys: scene_hash (text), seed, sampling_version (int), version, isa,
             cpu_vendor, command (text), exposure (EV), white_balance ([X, Y, Z] that becomes white, or None),
-            hide_environment (bool: PNG gets an alpha channel), render_seconds (float). Others are kept.
+            hide_environment (bool: PNG gets an alpha channel), render_seconds (float), rays (int). Others are kept.
     """
 
     def __init__(self, film: Film, metadata: Mapping[str, object] | None = None) -> None:
@@ -139,7 +140,8 @@ class Image:
             omit_time: EXR only, leaves the render time out, so that repeated renders give equal files.
 
         Raises:
-            ImageError: unknown extension, or the file cannot be written.
+            ImageError: unknown extension, or something that the format cannot hold.
+            ImageWriteError: the file cannot be written.
         """
         extension = Path(path).suffix.lower()
         if extension == ".exr":
@@ -165,10 +167,11 @@ class Image:
 
     @classmethod
     def merge(cls, images: Sequence[Image], *, mixed: bool = False) -> Image:
-        """The exact sum of images that hold disjoint samples of one scene; metadata are the first one's.
+        """The exact sum of images that hold disjoint samples of one scene.
 
         Args:
-            images: at least one, in any order; the sums do not depend on it.
+            images: at least one, in any order; the sums do not depend on it. Metadata are the first one's, with times
+                and rays added.
             mixed: allows different versions, instruction sets or processor vendors. The sums stay exact, but the
                 result is no longer the bits of one machine, and its metadata say so ("mixed": True).
 
@@ -185,9 +188,10 @@ class Image:
                 _check_same(metadata, other.metadata, _SAME_LEVEL, " (--mixed allows it)")
             elif any(metadata.get(key) != other.metadata.get(key) for key in _SAME_LEVEL):
                 metadata["mixed"] = True
-        seconds = [image.metadata["render_seconds"] for image in images if "render_seconds" in image.metadata]
-        if seconds:
-            metadata["render_seconds"] = sum(seconds)
+        for key in _SUMMED:
+            values = [image.metadata[key] for image in images if image.metadata.get(key) is not None]
+            if values:
+                metadata[key] = sum(values)
         return cls(reduce(merge, (image.film for image in images)), metadata)
 
     def pixels_equal(self, other: Image) -> bool:

@@ -5,11 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from accuray.formats.places import depth_error, value_error
 from accuray.scene.errors import SceneError, show
-
-
-class _Refused(ValueError):
-    """JSON that Python would read but a scene file may not hold."""
 
 
 def parse(text: str, name: str) -> dict[str, Any]:
@@ -27,9 +24,9 @@ def parse(text: str, name: str) -> dict[str, Any]:
             shown=text.split("\n")[error.lineno - 1],
         ) from None
     except RecursionError:
-        raise SceneError("is nested too deeply", file=name, allowed="a few levels of lists and objects") from None
+        raise depth_error(text, name) from None
     except ValueError as error:
-        raise SceneError(f"JSON value error: {error}", file=name) from None
+        raise value_error(error, text, name) from None
     if not isinstance(content, dict):
         raise SceneError(f"{show(content)} is not an object", file=name, value=content, allowed='{"accuray": 1, ...}')
     return content
@@ -40,9 +37,9 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(table) != len(pairs):
         keys = [key for key, _ in pairs]
         twice = next(key for key in keys if keys.count(key) > 1)
-        raise _Refused(f"the key {show(twice)} is there twice in one object")
+        raise ValueError(f"the key {show(twice)} is there twice in one object", "each key once")
     return table
 
 
 def _refuse_constant(name: str) -> float:
-    raise _Refused(f"{name} is not a number of JSON")
+    raise ValueError(f"{name} is not a number of JSON", "finite numbers")

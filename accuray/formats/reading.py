@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from accuray.formats.merging import apply_override, merge, parse_override
 from accuray.scene import Scene, SceneError
-from accuray.scene.errors import Document, Source, Where
+from accuray.scene.errors import Document, Source, Where, show
 from accuray.scene.paths import Confinement, check_regular, display_path
 from accuray.scene.scene import build, check_file_keys
 
@@ -19,6 +19,7 @@ SceneReader = Callable[[str, str], dict[str, Any]]
 """(text, name for errors) -> dict; raises SceneError."""
 
 MAX_INCLUDE_DEPTH = 32
+MAX_FILES = 1000
 
 
 def load_scene(
@@ -29,8 +30,9 @@ def load_scene(
 ) -> Scene:
     """See ``accuray.formats.load``."""
     shown = os.fspath(path)
-    files = Confinement.around(Path(shown).parent, tuple(Path(root) for root in roots))
     real = _existing(shown, readers)
+    folders = tuple(Path(root) for root in roots)
+    files = Confinement.around(real.parent, folders)
     document = _Reading(readers, files).read(real, shown, ())
     document.top = replace(document.top, folder=files.folders[0])
     if isinstance(overrides, str):
@@ -41,17 +43,15 @@ def load_scene(
         changes = [(f"-D {text}", *parse_override(text)) for text in overrides]
     for name, key, value in changes:
         apply_override(document, name, key, value)
-    return build(document, roots=tuple(Path(root) for root in roots), path=real)
+    return build(document, roots=folders, path=real)
 
 
 def _existing(shown: str, readers: Mapping[str, SceneReader]) -> Path:
     """The scene file that the caller names: anywhere, but a regular file of a known type."""
     where = Where(Document({}, Source(name=shown)))
     path = Path(shown)
-    if "\0" in shown or not shown:
-        raise where.error("is not a file name", value=shown)
-    if not path.exists():
-        raise SceneError("does not exist", file=shown, value=shown)
+    if not os.path.exists(shown):
+        raise SceneError(f"{show(shown)} does not exist", file=shown, value=shown, allowed="a scene file")
     if path.suffix.lower() not in readers:
         raise where.error("is not a scene file", value=shown, allowed="the endings " + ", ".join(readers))
     check_regular(path, where, shown)
@@ -64,9 +64,11 @@ class _Reading:
 
     readers: Mapping[str, SceneReader]
     files: Confinement
+    opened: list[Path] = field(default_factory=list)
 
     def read(self, path: Path, shown: str, chain: tuple[tuple[Path, str], ...]) -> Document:
         """The merged document of a file; ``chain`` are the files that include it, outermost first."""
+        self.opened.append(path)
         text = _text(path, shown)
         syntax = path.suffix.lower().lstrip(".")
         data = self.readers[path.suffix.lower()](text, shown)
@@ -96,6 +98,8 @@ class _Reading:
                 raise item.error("includes itself: " + " -> ".join([*(s for _, s in chain), shown]), value=name)
             if len(chain) > MAX_INCLUDE_DEPTH:
                 raise item.error("is included too deeply", value=name, allowed=f"{MAX_INCLUDE_DEPTH} levels")
+            if len(self.opened) >= MAX_FILES:
+                raise item.error("is one file too many", value=name, allowed=f"{MAX_FILES} files in all")
             documents.append(self.read(path, shown, chain))
         return documents
 

@@ -6,6 +6,7 @@ import re
 import tomllib
 from typing import Any
 
+from accuray.formats.places import depth_error, value_error
 from accuray.scene.errors import SceneError
 
 _PLACE = re.compile(r" \(at line (\d+), column (\d+)\)$")
@@ -25,6 +26,6 @@ def parse(text: str, name: str) -> dict[str, Any]:
             f"{column}TOML syntax error: {_PLACE.sub('', message)}", file=name, line=line, shown=lines[line - 1]
         ) from None
     except RecursionError:
-        raise SceneError("is nested too deeply", file=name, allowed="a few levels of lists and tables") from None
-    except ValueError as error:  # a date that does not exist, an integer of thousands of digits
-        raise SceneError(f"TOML value error: {error}", file=name) from None
+        raise depth_error(text, name) from None
+    except ValueError as error:
+        raise value_error(error, text, name) from None

@@ -88,7 +88,7 @@ class _Scanner:
         """One ``key = value`` (TOML) or ``"key": value`` (JSON)."""
         start = self.position
         path = (*table, *self.key_path())
-        for length in range(len(table) + 1, len(path) + 1):
+        for length in range(len(table) + 1, min(len(path), len(self.wanted)) + 1):
             self.note(path[:length], start)
         self.skip_blank()
         self.expect(separator)

@@ -39,17 +39,16 @@ def resolve_params(
     for key in given:
         if key not in known:
             raise where.child(key).unknown(key, f"parameter of {type_.name}", known)
-    chosen = _choose_alternatives(type_, given, where)
-    values: dict[str, Any] = {}
+    values: dict[str, Any] = dict.fromkeys(param.name for param in type_.params)
     for param in type_.params:
         if param.name in given:
             values[param.name] = resolve_value(param, given[param.name], where.child(param.name), scope)
-        elif param.group and chosen[param.set_name] != param.alternative:
-            values[param.name] = None
-        else:
+    chosen = _choose_alternatives(type_, given, where)
+    for param in type_.params:
+        applies = not param.group or chosen[param.set_name] == param.alternative
+        if applies and param.name not in given:
             values[param.name] = _default(param, scope)
-        wanted = chosen[param.set_name] == param.alternative if param.group else param.required
-        if wanted and values[param.name] is None:
+        if applies and values[param.name] is None and (param.group or param.required):
             raise where.error(f"lacks `{param.name}`", allowed=f"{param.kind}: {param.doc}")
     _expand_shorthands(type_, values, where, scope)
     check_together(type_, values, where)

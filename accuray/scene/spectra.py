@@ -62,6 +62,8 @@ def parse_spectrum(param: Param, value: Any, where: Where, scope: Scope) -> Spec
     """The Spectrum that ``value`` spells, for a parameter's role, unit and range. Raises SceneError."""
     reading = _Reading(param, scope, where)
     if isinstance(value, Spectrum):
+        if value.role != param.role:
+            raise where.error(f"is {_article(value.role)}, not {_article(param.role)}", value=value)
         spectrum = value
     elif isinstance(value, dict):
         return _from_table(reading, value)
@@ -140,7 +142,7 @@ def _from_quantity(reading: _Reading, text: str) -> Spectrum:
     if exponents == (("K", 1),) and param.role == "emission":
         spectrum = _blackbody(reading, text)
     elif exponents == units.parse_unit(param.unit).exponents and exponents:
-        spectrum = Spectrum("constant", param.role, value=units.resolve(text, param.unit)[0])
+        spectrum = Spectrum("constant", param.role, value=quantity(param, text, where))
     elif not exponents:
         raise where.error("has no unit (a number is written without quotes)", value=text, allowed=_allowed(param))
     else:

@@ -24,7 +24,7 @@ def cell_integrals(
     resolution: tuple[int, int],
     tolerance: FloatArray | float,
     max_depth: int = 10,
-    budget: int = 10_000_000,
+    budget: int = 4_000_000,
     suspects: NDArray[np.bool_] | None = None,
     forced_depth: int = 6,
 ) -> FloatArray:

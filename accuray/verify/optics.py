@@ -29,11 +29,6 @@ def fresnel(theta: float, index: complex) -> float:
     return 0.5 * sum(fresnel_pair(theta, index))
 
 
-def refracted(theta: float, index: float) -> float:
-    """Angle behind the interface (Snell), radians."""
-    return math.asin(math.sin(theta) / index)
-
-
 def slab_transmittance(reflectance: float) -> float:
     """Lossless plane slab with all internal reflections: the geometric series of its two interfaces."""
     return (1.0 - reflectance) / (1.0 + reflectance)

@@ -28,7 +28,7 @@ class Effort:
 
 
 QUICK = Effort(0.7 * POWER, 40_000_000)
-THOROUGH = Effort(0.2 * POWER, 1_000_000_000)
+THOROUGH = Effort(0.2 * POWER, 300_000_000)
 
 
 def all_cases() -> list[Case]:

@@ -154,6 +154,8 @@ def _paints() -> list[Case]:
     paints = _columns("cornell_box_reflectance.csv")
     wavelengths = paints["wavelength_nm"]
     lamp_wavelengths, lamp_values = _columns("cornell_box_light.csv").values()
+    # Nothing was measured beyond 700 nm: the lamp ends within one nanometre, not with a jump that has no given side.
+    lamp_wavelengths, lamp_values = (*lamp_wavelengths, 701.0), (*lamp_values, 0.0)
     warm = colorimetry.table(lamp_wavelengths, lamp_values, "zero")
     warm_xyz = colorimetry.xyz(warm)
     emission = {"wavelengths": list(lamp_wavelengths), "values": list(lamp_values), "scale": 1.0 / float(warm_xyz[1])}

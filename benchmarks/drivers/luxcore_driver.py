@@ -32,8 +32,8 @@ class LuxCore:
             self.session.UpdateStats()
         self.session.Stop()
         self.session.UpdateStats()
-        samples = self.session.GetStats().Get("stats.renderengine.total.samplecount").GetFloat()
-        return float(samples) / (self.description["width"] * self.description["height"])
+        samples = float(self.session.GetStats().Get("stats.renderengine.total.samplecount").GetFloat())
+        return samples / float(self.description["width"] * self.description["height"])
 
     def image(self) -> Image:
         """The raw film; LuxCore's rows start at the bottom."""

@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 from common import Image, drive
 
-VISIBLE = (360.0, 830.0)
-
 
 class Mitsuba:
     """Mitsuba with the scene loaded; ``render`` waits for the pixels."""
@@ -37,7 +35,7 @@ class Mitsuba:
 
     def _description(self, job: dict[str, Any], scene: dict[str, Any]) -> dict[str, Any]:
         materials = {
-            name: {"type": "diffuse", "reflectance": self._spectrum(spectrum, hold=True)}
+            name: {"type": "diffuse", "reflectance": self._spectrum(spectrum)}
             for name, spectrum in scene["reflectances"].items()
         }
         shapes = {}
@@ -49,7 +47,7 @@ class Mitsuba:
                 "bsdf": materials[mesh["material"]],
             }
             if mesh["material"] == scene["emitter"]:
-                shape["emitter"] = {"type": "area", "radiance": self._spectrum(scene["emission"], hold=False)}
+                shape["emitter"] = {"type": "area", "radiance": self._spectrum(scene["emission"])}
             shapes[mesh["name"]] = shape
         integrator = {"type": "path", "max_depth": -1, "rr_depth": scene["roulette_start"]}
         return {"type": "scene", "integrator": integrator, "sensor": self._sensor(job, scene), **shapes}
@@ -71,14 +69,11 @@ class Mitsuba:
         field = {"fov": camera["fov"], "fov_axis": "x", "near_clip": 0.001, "far_clip": 100.0}
         return {"type": "perspective", "to_world": to_world, "film": film, "sampler": sampler, **field}
 
-    def _spectrum(self, spectrum: dict[str, Any], hold: bool) -> dict[str, Any]:
-        """The measured table, in which ``hold`` repeats the end values (Mitsuba has 0 outside), or its RGB."""
+    def _spectrum(self, spectrum: dict[str, Any]) -> dict[str, Any]:
+        """The measured table (Mitsuba has 0 outside it), or its RGB."""
         if not self.spectral:
             return {"type": "rgb", "value": list(spectrum["rgb"])}
-        pairs = list(zip(spectrum["wavelengths"], spectrum["values"], strict=True))
-        if hold:
-            pairs = [(VISIBLE[0], pairs[0][1]), *pairs, (VISIBLE[1], pairs[-1][1])]
-        return {"type": "spectrum", "value": pairs}
+        return {"type": "spectrum", "value": list(zip(spectrum["wavelengths"], spectrum["values"], strict=True))}
 
 
 if __name__ == "__main__":

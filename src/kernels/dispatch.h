@@ -10,6 +10,11 @@ struct Type {
   using type = T;
 };
 
+template <class T, class U>
+inline constexpr bool is_same = false;
+template <class T>
+inline constexpr bool is_same<T, T> = true;
+
 template <class... Ts>
 struct TypeList {
   static constexpr uint32_t size = sizeof...(Ts);
@@ -30,7 +35,7 @@ ACCURAY_INLINE auto dispatch(TypeList<T, Ts...>, uint32_t tag, Fn&& fn) {
 // Position of T in the list; the size of the list if it is not there.
 template <class T, class... Ts>
 constexpr uint32_t tag_of(TypeList<Ts...>) {
-  constexpr bool same[] = {__is_same(T, Ts)...};
+  constexpr bool same[] = {is_same<T, Ts>...};
   for (uint32_t i = 0; i < sizeof...(Ts); ++i) {
     if (same[i]) return i;
   }

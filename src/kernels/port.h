@@ -82,6 +82,7 @@ inline u32x4 reverse_bits(u32x4 a) {
 }  // namespace accuray
 
 #define ACCURAY_INLINE __forceinline__
+#define ACCURAY_NOINLINE __noinline__
 #define ACCURAY_OFFSET_OF(type, member) static_cast<uint32_t>(__builtin_offsetof(type, member))
 
 #else  // host
@@ -142,6 +143,7 @@ inline uint32_t reverse_bits(uint32_t x) {
 }  // namespace accuray
 
 #define ACCURAY_INLINE inline __attribute__((always_inline))
+#define ACCURAY_NOINLINE __attribute__((noinline))
 #define ACCURAY_OFFSET_OF(type, member) static_cast<accuray::uint32_t>(offsetof(type, member))
 
 #endif

@@ -13,9 +13,9 @@
 namespace accuray {
 namespace {
 
-constexpr int kLanes = 4;       // partial sums per integral: their order is fixed, so SIMD cannot change a bit
-constexpr int kBands = 95;      // 360 to 830 nm in steps of 5 nm
-constexpr int kPadded = 96;     // kBands rounded up to whole lanes; the weights of the padding are 0
+constexpr int kLanes = 4;    // partial sums per integral: their order is fixed, so SIMD cannot change a bit
+constexpr int kBands = 95;   // 360 to 830 nm in steps of 5 nm
+constexpr int kPadded = 96;  // kBands rounded up to whole lanes; the weights of the padding are 0
 constexpr int kCmfSamples = 471;
 constexpr double kMaxCoefficient = 200.0;
 constexpr double kGoodEnough = 1e-4;  // length of the Lab residual at which a fit ends
@@ -66,7 +66,8 @@ Companded compand(double v) {
 }
 
 Vec3 to_lab(const Vec3& xyz, const Vec3& white) {
-  double x = compand(xyz[0] / white[0]).value, y = compand(xyz[1] / white[1]).value, z = compand(xyz[2] / white[2]).value;
+  double x = compand(xyz[0] / white[0]).value, y = compand(xyz[1] / white[1]).value,
+         z = compand(xyz[2] / white[2]).value;
   return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
 }
 
@@ -115,7 +116,8 @@ Fit evaluate(const Quadrature& q, const Vec3& c, const Vec3& target_lab) {
     fit.jacobian[1][j] = 500.0 * (slope[0][j] - slope[1][j]);
     fit.jacobian[2][j] = 200.0 * (slope[1][j] - slope[2][j]);
   }
-  fit.squared = fit.residual[0] * fit.residual[0] + fit.residual[1] * fit.residual[1] + fit.residual[2] * fit.residual[2];
+  fit.squared =
+      fit.residual[0] * fit.residual[0] + fit.residual[1] * fit.residual[1] + fit.residual[2] * fit.residual[2];
   return fit;
 }
 
@@ -192,7 +194,8 @@ class ColumnFitter {
 
     Vec3 c = fit_coefficients(quadrature_, guess, to_lab(xyz, quadrature_.white));
     size_t node = ((static_cast<size_t>(l * n_ + k) * static_cast<size_t>(n_)) + static_cast<size_t>(y)) *
-                      static_cast<size_t>(n_) + static_cast<size_t>(x);
+                      static_cast<size_t>(n_) +
+                  static_cast<size_t>(x);
     for (size_t i = 0; i < 3; ++i) table_[node * 3 + i] = static_cast<float>(c[i]);
     return c;
   }
@@ -210,7 +213,8 @@ void check_array(const char* name, std::span<const double> values, size_t size) 
                                 " values, allowed: " + std::to_string(size));
   }
   for (double v : values) {
-    if (!std::isfinite(v)) throw std::invalid_argument("RGB table: " + std::string(name) + " holds a value that is not finite");
+    if (!std::isfinite(v))
+      throw std::invalid_argument("RGB table: " + std::string(name) + " holds a value that is not finite");
   }
 }
 
@@ -227,7 +231,8 @@ std::vector<float> rgb_table_scale_nodes(int n) {
 
 std::vector<float> build_rgb_table(int n, std::span<const double> cmf, std::span<const double> illuminant, int threads,
                                    const std::array<double, 9>& rgb_to_xyz) {
-  if (n < 2 || n > 256) throw std::invalid_argument("RGB table: " + std::to_string(n) + " nodes per axis, allowed: 2 to 256");
+  if (n < 2 || n > 256)
+    throw std::invalid_argument("RGB table: " + std::to_string(n) + " nodes per axis, allowed: 2 to 256");
   check_array("the colour matching functions", cmf, static_cast<size_t>(kCmfSamples) * 3);
   check_array("the illuminant", illuminant, kBands);
   check_array("the matrix", rgb_to_xyz, 9);

@@ -45,8 +45,9 @@ void drop_triangles(MeshData& mesh) {
     } else if (!has_area(a, b, c)) {
       ++mesh.report.degenerate_triangles;
     } else {
-      if (kept != corner) std::copy_n(mesh.indices.begin() + static_cast<ptrdiff_t>(corner), 3,
-                                      mesh.indices.begin() + static_cast<ptrdiff_t>(kept));
+      if (kept != corner)
+        std::copy_n(mesh.indices.begin() + static_cast<ptrdiff_t>(corner), 3,
+                    mesh.indices.begin() + static_cast<ptrdiff_t>(kept));
       kept += 3;
     }
   }
@@ -113,7 +114,8 @@ void require_indices_in_range(const MeshData& mesh, std::string_view name) {
   auto bad = std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](uint32_t index) { return index >= vertices; });
   if (bad == mesh.indices.end()) return;
   std::string subject = std::string("vertex index of triangle ") + std::to_string((bad - mesh.indices.begin()) / 3);
-  std::string allowed = vertices == 0 ? "none, for there are no vertices" : std::string("0 to ") + std::to_string(vertices - 1);
+  std::string allowed =
+      vertices == 0 ? "none, for there are no vertices" : std::string("0 to ") + std::to_string(vertices - 1);
   throw ReadError(name, {}, subject, std::to_string(*bad), "is out of range", allowed);
 }
 

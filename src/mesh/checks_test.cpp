@@ -85,7 +85,8 @@ TEST(Checks, IndicesInRange) {
   };
   expect_error(check, "shapes.a: vertex index of triangle 1 '3' is out of range: allowed 0 to 2");
   mesh.positions.clear();
-  expect_error(check, "shapes.a: vertex index of triangle 0 '0' is out of range: allowed none, for there are no vertices");
+  expect_error(check,
+               "shapes.a: vertex index of triangle 0 '0' is out of range: allowed none, for there are no vertices");
 }
 
 }  // namespace

@@ -27,8 +27,12 @@ Vec3 unit(const Vec3& a) {
 // Arc tangent of x in [0, 1], to 2e-8 (Abramowitz and Stegun 1964, 4.4.49): ample for a weight.
 double arc_tangent(double x) {
   double y = x * x;
-  return x * (1.0 + y * (-0.3333314528 + y * (0.1999355085 + y * (-0.1420889944 + y * (0.1065626393 +
-              y * (-0.0752896400 + y * (0.0429096138 + y * (-0.0161657367 + y * 0.0028662257))))))));
+  return x * (1.0 +
+              y * (-0.3333314528 +
+                   y * (0.1999355085 +
+                        y * (-0.1420889944 +
+                             y * (0.1065626393 + y * (-0.0752896400 +
+                                                      y * (0.0429096138 + y * (-0.0161657367 + y * 0.0028662257))))))));
 }
 
 // Angle between unit vectors, accurate for small and flat angles too (Kahan 2006): 2 atan(|a - b| / |a + b|).
@@ -82,12 +86,15 @@ std::vector<uint32_t> weld(std::span<const float> positions) {
   std::vector<uint32_t> distinct;  // first vertex of each position
   std::vector<uint32_t> first(vertices);
   IndexTable table;
-  auto bits = [&](uint32_t vertex, size_t axis) { return std::bit_cast<uint32_t>(positions[3 * size_t{vertex} + axis] + 0.0f); };
+  auto bits = [&](uint32_t vertex, size_t axis) {
+    return std::bit_cast<uint32_t>(positions[3 * size_t{vertex} + axis] + 0.0f);
+  };
   auto hash = [&](uint32_t vertex) { return hash_words(bits(vertex, 0), bits(vertex, 1), bits(vertex, 2)); };
   for (uint32_t vertex = 0; vertex < vertices; ++vertex) {
     auto same = [&](uint32_t number) {
       uint32_t other = distinct[number];
-      return bits(vertex, 0) == bits(other, 0) && bits(vertex, 1) == bits(other, 1) && bits(vertex, 2) == bits(other, 2);
+      return bits(vertex, 0) == bits(other, 0) && bits(vertex, 1) == bits(other, 1) &&
+             bits(vertex, 2) == bits(other, 2);
     };
     uint32_t fresh = static_cast<uint32_t>(distinct.size());
     uint32_t number = table.find_or_insert(hash(vertex), fresh, same, [&](uint32_t n) { return hash(distinct[n]); });

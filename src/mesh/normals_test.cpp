@@ -38,7 +38,8 @@ TEST(Normals, OfASphereAreRadial) {
     for (int j = 0; j <= sectors; ++j) {  // the last column repeats the first: a seam
       double theta = M_PI * i / rings, phi = 2.0 * M_PI * (j % sectors) / sectors;
       double ring = i == 0 || i == rings ? 0.0 : std::sin(theta);
-      for (double x : {ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)}) positions.push_back(static_cast<float>(x));
+      for (double x : {ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)})
+        positions.push_back(static_cast<float>(x));
     }
   }
   for (uint32_t i = 0; i < rings; ++i) {
@@ -77,7 +78,8 @@ TEST(Normals, TwoSidesOfALeafDoNotCancel) {
   const Floats leaf = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   Floats twice = leaf;
   twice.insert(twice.end(), leaf.begin(), leaf.end());
-  expect_near(smooth_normals(twice, Indices{0, 1, 2, 3, 5, 4}), {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, -1, 0, 0, -1});
+  expect_near(smooth_normals(twice, Indices{0, 1, 2, 3, 5, 4}),
+              {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, -1, 0, 0, -1});
   // With shared vertices one of the two sides is taken.
   for (float z : smooth_normals(leaf, Indices{0, 1, 2, 0, 2, 1})) EXPECT_TRUE(z == 0.0f || std::fabs(z) == 1.0f);
 }

@@ -61,7 +61,8 @@ template <class T>
 T out_of_range_value(std::string_view text) {
   bool negative = text.front() == '-';
   if (negative) text.remove_prefix(1);
-  bool small = text.find("e-") != text.npos || text.find("E-") != text.npos || text.front() == '0' || text.front() == '.';
+  bool small =
+      text.find("e-") != text.npos || text.find("E-") != text.npos || text.front() == '0' || text.front() == '.';
   T magnitude = small ? T(0) : std::numeric_limits<T>::infinity();
   return negative ? -magnitude : magnitude;
 }

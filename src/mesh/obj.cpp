@@ -53,13 +53,16 @@ class ObjReader {
   }
 
  private:
+  // Whether a line goes on in the next. Comments do not: many name a Windows folder at their end.
+  static bool continues(std::string_view line) { return line.ends_with('\\') && line.find('#') == line.npos; }
+
   // The next line with its continuations; first_line_ becomes the number of its first one.
   bool next_logical_line(std::string_view& line) {
     if (!input_.next_line(line)) return false;
     first_line_ = input_.line();
-    if (line.empty() || line.back() != '\\' || Words(line, true).at_end()) return true;
+    if (!continues(line)) return true;
     joined_.clear();
-    while (!line.empty() && line.back() == '\\') {
+    while (continues(line)) {
       joined_.append(line.substr(0, line.size() - 1)).push_back(' ');
       check_length(joined_.size());
       if (!input_.next_line(line)) line = {};
@@ -109,10 +112,12 @@ class ObjReader {
     }
     if (count < low || !words.at_end()) {
       std::string allowed = low == high ? std::to_string(low) : std::to_string(low) + " to " + std::to_string(high);
-      if (count < low) fail(keyword, "", std::string("has ") + std::to_string(count) + " numbers", allowed + " numbers");
+      if (count < low)
+        fail(keyword, "", std::string("has ") + std::to_string(count) + " numbers", allowed + " numbers");
       fail(keyword, words.peek(), "is one number too many", allowed + " numbers");
     }
-    attribute.values.insert(attribute.values.end(), value.begin(), value.begin() + static_cast<ptrdiff_t>(attribute.width));
+    attribute.values.insert(attribute.values.end(), value.begin(),
+                            value.begin() + static_cast<ptrdiff_t>(attribute.width));
     return count;
   }
 
@@ -220,7 +225,7 @@ class ObjReader {
   }
 
   // The values of one list per vertex, `missing` where a corner has none; empty if no corner has any.
-  std::vector<float> gather(Attribute& attribute, uint32_t Corner::*index, float missing) {
+  std::vector<float> gather(Attribute& attribute, uint32_t Corner::* index, float missing) {
     std::vector<float> result;
     bool used = std::any_of(corners_.begin(), corners_.end(), [&](const Corner& c) { return c.*index != kNone; });
     if (used) {

@@ -55,7 +55,8 @@ TEST(Obj, PositiveIndicesMayReferForward) {
 }
 
 TEST(Obj, EqualCornersShareAVertex) {
-  MeshData mesh = read_obj_text(kSquare + "vt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\nf 1/2 4/1 3/1\nf 1/1 3/1 2/1\n");
+  MeshData mesh =
+      read_obj_text(kSquare + "vt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\nf 1/2 4/1 3/1\nf 1/1 3/1 2/1\n");
   EXPECT_EQ(mesh.positions.size(), 3u * 5);  // four, and the first again with another uv
   EXPECT_EQ(mesh.indices, (Indices{0, 1, 2, 0, 2, 3, 4, 3, 2, 0, 2, 1}));
   EXPECT_EQ(mesh.uvs, (Floats{0, 0, 0, 0, 0, 0, 0, 0, 1, 1}));
@@ -73,25 +74,29 @@ TEST(Obj, MissingPartsOfMixedFaces) {
 TEST(Obj, LineEndsBlanksCommentsAndContinuations) {
   MeshData plain = read_obj_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   EXPECT_EQ(read_obj_text("v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nf 1 2 3\r\n").positions, plain.positions);
-  EXPECT_EQ(read_obj_text("# a\\\nv 0 0 0\n\n\tv\t1 0  0\t\n  v 1 1 0 # x\nf 1 2 3").positions, plain.positions);
-  EXPECT_EQ(read_obj_text("v 0 \\\n0 0\nv 1\\\r\n 0\\\r\n 0\r\nv 1 1 0\nf 1 \\\n2 \\\n\\\n3 \\").positions, plain.positions);
+  EXPECT_EQ(read_obj_text("# a\\\nv 0 0 0\n\n\tv\t1 0  0\t\n  v 1 1 0 # x\\\nf 1 2 3").positions, plain.positions);
+  EXPECT_EQ(read_obj_text("v 0 \\\n0 0\nv 1\\\r\n 0\\\r\n 0\r\nv 1 1 0\nf 1 \\\n2 \\\n\\\n3 \\").positions,
+            plain.positions);
 }
 
 TEST(Obj, NumbersOfEveryKind) {
   MeshData mesh = read_obj_text("v +1 -.5 2.\nv 1e2 -1E-2 +1.5e+1\nv 1e-60 0.1 0.30000001192092896\nf 1 2 3\n");
   EXPECT_EQ(mesh.positions, (Floats{1, -.5f, 2, 100, -.01f, 15, 0, .1f, .3f}));
-  EXPECT_EQ(read_obj_text("v 0 0 0 1\nv 1 0 0 .5 .5 .5\nv 0 1 0\nf 1 2 3\n").positions, (Floats{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(read_obj_text("v 0 0 0 1\nv 1 0 0 .5 .5 .5\nv 0 1 0\nf 1 2 3\n").positions,
+            (Floats{0, 0, 0, 1, 0, 0, 0, 1, 0}));
 }
 
 TEST(Obj, KeywordsIgnoredAndUnknown) {
-  MeshData mesh = read_obj_text("mtllib a.mtl\no x\ng y\ns off\nusemtl m\nl 1 2\np 1\ncurv2 1 2\n" + kSquare + "f 1 2 3\nxyz\n");
+  MeshData mesh =
+      read_obj_text("mtllib a.mtl\no x\ng y\ns off\nusemtl m\nl 1 2\np 1\ncurv2 1 2\n" + kSquare + "f 1 2 3\nxyz\n");
   EXPECT_EQ(mesh.indices.size(), 3u);
   EXPECT_EQ(mesh.report.unknown, 2u);
   EXPECT_EQ(mesh.report.first_unknown, "curv2 in line 8");
 }
 
 TEST(Obj, UnusableTrianglesAreCountedAndTheRestIsRead) {
-  MeshData mesh = read_obj_text(kSquare + "v nan 0 0\nv 1e300 0 -inf\nv 2e18 0 0\nv 1.#QNAN 0 0\nv 0 0 0\n"
+  MeshData mesh = read_obj_text(kSquare +
+                                "v nan 0 0\nv 1e300 0 -inf\nv 2e18 0 0\nv 1.#QNAN 0 0\nv 0 0 0\n"
                                 "f 1 2 3\nf 1 2 5\nf 1 2 6\nf 1 2 7\nf 1 2 8\nf 1 9 2\nf 1 1 2\nf 1 3 4\n");
   expect_valid(mesh);
   EXPECT_EQ(mesh.report.nonfinite_triangles, 4u);
@@ -122,7 +127,8 @@ TEST(Obj, Errors) {
   expect_obj_error(kSquare + "f 1 2 3.5\n", "5: face corner '3.5' " + corner);
   expect_obj_error(kSquare + "f 1 2 - 3\n", "5: face corner '-' " + corner);
   expect_obj_error(kSquare + "vn 0 0 1\nf 1/1/1/1 2 3\n", "6: face corner '1/1/1/1' " + corner);
-  expect_obj_error(kSquare + "vn 0 0 1\nf 1/1/1 2 3\n", "6: uv index '1' is out of range: allowed none, for there is no uv");
+  expect_obj_error(kSquare + "vn 0 0 1\nf 1/1/1 2 3\n",
+                   "6: uv index '1' is out of range: allowed none, for there is no uv");
   expect_obj_error(kSquare + "vn 0 0 1\nf 1//1/1 2 3\n", "6: face corner '1//1/1' " + corner);
 }
 
@@ -159,7 +165,8 @@ TEST(Obj, FileEqualsMemory) {
   }
   text += polygon + "\nf 1 2 3\n";
   ASSERT_GT(polygon.size(), size_t{1} << 20);
-  auto path = (std::filesystem::temp_directory_path() / (std::string("accuray_obj_test_") + std::to_string(std::random_device{}()) + ".obj"));
+  auto path = (std::filesystem::temp_directory_path() /
+               (std::string("accuray_obj_test_") + std::to_string(std::random_device{}()) + ".obj"));
   std::ofstream(path, std::ios::binary) << text;
   MeshData from_file = read_obj(path.string()), from_memory = read_obj_text(text);
   std::filesystem::remove(path);
@@ -173,8 +180,9 @@ TEST(Obj, Mutants) {
   const std::vector<std::string> seeds = {
       kSquare + "vt 0 0\nvt 1 1\nvn 0 0 1\nvn 0 1 0\ng a\nf 1/1/1 2/2/2 3/1/1 4/2/2\nf -1//-1 -2//-2 -3//-1\n",
       kSquare + "# c\nf 1 2 3\nf 1 \\\n3 4\nusemtl x\nv 1e3 -2.5E-3 +7 1\nf 5 2 3\r\n"};
-  const std::vector<std::string> tokens = {"nan", "inf",  "1e39", "-1", "0",   "4294967295", "99999999999", "/", "//",
-                                           "\\\n", "\r\n", "\n",   " ",  "f ", "v ",         "vn 0 0 0\n",  "#", "vt 1"};
+  const std::vector<std::string> tokens = {"nan",         "inf", "1e39", "-1",         "0",    "4294967295",
+                                           "99999999999", "/",   "//",   "\\\n",       "\r\n", "\n",
+                                           " ",           "f ",  "v ",   "vn 0 0 0\n", "#",    "vt 1"};
   survive_mutants(seeds, tokens, 6000, [](const std::string& text) { return read_obj_text(text); });
 }
 

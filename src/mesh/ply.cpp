@@ -68,9 +68,11 @@ class PlyReader {
       if (element.name == "vertex") vertex_ = &element;
       if (element.name == "face") face_ = &element;
     }
-    if (!vertex_ || !face_) fail_header(0, vertex_ ? "element face" : "element vertex", "is missing", "both element vertex and element face");
+    if (!vertex_ || !face_)
+      fail_header(0, vertex_ ? "element face" : "element vertex", "is missing", "both element vertex and element face");
     if (vertex_->count >= kNone) {
-      fail_header(vertex_->line, std::string("number of vertices ") + std::to_string(vertex_->count), "is too large", "4294967294");
+      fail_header(vertex_->line, std::string("number of vertices ") + std::to_string(vertex_->count), "is too large",
+                  "4294967294");
     }
     find_vertex_roles();
     find_face_roles();
@@ -79,10 +81,12 @@ class PlyReader {
 
   void find_vertex_roles() {
     slots_.assign(vertex_->properties.size(), kSkip);
-    if (!claim({"x", "y", "z"}, 0)) fail_header(vertex_->line, "element vertex", "lacks a property", "scalars x, y and z");
+    if (!claim({"x", "y", "z"}, 0))
+      fail_header(vertex_->line, "element vertex", "lacks a property", "scalars x, y and z");
     has_normals_ = claim({"nx", "ny", "nz"}, 3);
     using Pair = std::array<std::string_view, 2>;
-    for (const Pair& pair : {Pair{"u", "v"}, Pair{"s", "t"}, Pair{"texture_u", "texture_v"}, Pair{"texture_s", "texture_t"}}) {
+    for (const Pair& pair :
+         {Pair{"u", "v"}, Pair{"s", "t"}, Pair{"texture_u", "texture_v"}, Pair{"texture_s", "texture_t"}}) {
       if (!has_uvs_) has_uvs_ = claim({pair[0], pair[1]}, 6);
     }
   }
@@ -101,7 +105,8 @@ class PlyReader {
     corners_ = std::min(face_->find("vertex_indices"), face_->find("vertex_index"));
     if (corners_ == face_->properties.size() || !face_->properties[corners_].is_list ||
         !is_integer(face_->properties[corners_].type)) {
-      fail_header(face_->line, "element face", "lacks its corners", "a list of integers vertex_indices or vertex_index");
+      fail_header(face_->line, "element face", "lacks its corners",
+                  "a list of integers vertex_indices or vertex_index");
     }
   }
 
@@ -177,7 +182,8 @@ class PlyReader {
     for (uint64_t i = 0; i < length; ++i) {
       double value = values_.next(property.type);
       if (!(value >= 0.0 && value < static_cast<double>(vertex_->count)) || value != std::floor(value)) {
-        std::string allowed = vertex_->count == 0 ? "none, for there are no vertices" : std::string("0 to ") + std::to_string(vertex_->count - 1);
+        std::string allowed = vertex_->count == 0 ? "none, for there are no vertices"
+                                                  : std::string("0 to ") + std::to_string(vertex_->count - 1);
         values_.fail("vertex index", text_of(value), "is out of range", allowed);
       }
       uint32_t vertex = static_cast<uint32_t>(value);

@@ -15,11 +15,21 @@ namespace {
 constexpr size_t kMaxHeaderLines = 100000;
 
 constexpr std::array<std::pair<std::string_view, PlyScalar>, 16> kScalarNames = {{
-    {"char", PlyScalar::int8},      {"int8", PlyScalar::int8},       {"uchar", PlyScalar::uint8},
-    {"uint8", PlyScalar::uint8},    {"short", PlyScalar::int16},     {"int16", PlyScalar::int16},
-    {"ushort", PlyScalar::uint16},  {"uint16", PlyScalar::uint16},   {"int", PlyScalar::int32},
-    {"int32", PlyScalar::int32},    {"uint", PlyScalar::uint32},     {"uint32", PlyScalar::uint32},
-    {"float", PlyScalar::float32},  {"float32", PlyScalar::float32}, {"double", PlyScalar::float64},
+    {"char", PlyScalar::int8},
+    {"int8", PlyScalar::int8},
+    {"uchar", PlyScalar::uint8},
+    {"uint8", PlyScalar::uint8},
+    {"short", PlyScalar::int16},
+    {"int16", PlyScalar::int16},
+    {"ushort", PlyScalar::uint16},
+    {"uint16", PlyScalar::uint16},
+    {"int", PlyScalar::int32},
+    {"int32", PlyScalar::int32},
+    {"uint", PlyScalar::uint32},
+    {"uint32", PlyScalar::uint32},
+    {"float", PlyScalar::float32},
+    {"float32", PlyScalar::float32},
+    {"double", PlyScalar::float64},
     {"float64", PlyScalar::float64},
 }};
 

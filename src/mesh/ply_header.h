@@ -22,7 +22,7 @@ constexpr bool is_integer(PlyScalar type) { return type < PlyScalar::float32; }
 
 struct PlyProperty {
   std::string name;
-  PlyScalar type;                            // of the value, or of each item of a list
+  PlyScalar type;  // of the value, or of each item of a list
   bool is_list = false;
   PlyScalar length_type = PlyScalar::uint8;  // of a list's length
 };

@@ -119,9 +119,10 @@ def test_interrupted_process_leaves_a_usable_image(scene: Path, number: signal.S
         while json.loads(process.stderr.readline())["done"] < 1:
             pass
         process.send_signal(number)
-        out, _ = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=60)
     assert process.returncode == status
     assert out.splitlines() == ["ball.exr", "ball.png"]
+    assert json.loads(err.splitlines()[-1]) == {"warning": "interrupted; the image so far has been written"}
     samples = accuray.Image.load("ball.exr").layers["samples"]
     assert 1 <= samples.min() <= samples.max() < 100_000_000
 

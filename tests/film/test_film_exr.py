@@ -178,6 +178,22 @@ def test_foreign_files_are_named_for_what_they_are(tmp_path: Path) -> None:
         Image.load(path)
 
 
+def test_a_picture_too_large_for_its_file_is_refused_before_decoding(image: Image, tmp_path: Path) -> None:
+    """Rows as before, so that the offset table fits, and columns that ask for 704 MB."""
+    path = tmp_path / "a.exr"
+    image.save(path)
+    lie = path.read_bytes().replace(struct.pack("<4i", 0, 0, 36, 20), struct.pack("<4i", 0, 0, (1 << 20) - 1, 20))
+    path.write_bytes(lie.replace(b'"window":[0,0,37,21]', b'"window":[0,0,1048576,21]'))
+    # The ledger grew by five characters: its attribute's size says so.
+    data = path.read_bytes()
+    name = b"accuray:ledger\0string\0"
+    at = data.index(name) + len(name)
+    (length,) = struct.unpack_from("<i", data, at)
+    path.write_bytes(data[:at] + struct.pack("<i", length + 5) + data[at + 4 :])
+    with pytest.raises(ImageError, match=r"it declares \d{9} bytes of pixels in a file of \d{5} bytes"):
+        Image.load(path)
+
+
 def test_a_newer_format_is_named(image: Image, tmp_path: Path) -> None:
     path = tmp_path / "a.exr"
     image.save(path)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from accuray.film import ImageError, atomic_write, probe_writable
+from accuray.film import ImageWriteError, atomic_write, probe_writable
 
 DATA = bytes(range(256)) * 100
 
@@ -47,14 +47,16 @@ def test_long_names_work(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("check", [lambda p: atomic_write(p, DATA), probe_writable])
 def test_impossible_targets_are_named(tmp_path: Path, check) -> None:  # type: ignore[no-untyped-def]
-    with pytest.raises(ImageError, match=f"^{tmp_path}/no/a.exr: cannot be written: there is no folder {tmp_path}/no$"):
+    with pytest.raises(
+        ImageWriteError, match=f"^{tmp_path}/no/a.exr: cannot be written: there is no folder {tmp_path}/no$"
+    ):
         check(tmp_path / "no" / "a.exr")
-    with pytest.raises(ImageError, match="is not a regular file"):
+    with pytest.raises(ImageWriteError, match="is not a regular file"):
         check(tmp_path)
-    with pytest.raises(ImageError, match="is not a regular file"):
+    with pytest.raises(ImageWriteError, match="is not a regular file"):
         check("/dev/null")
     (tmp_path / "file").write_bytes(b"")
-    with pytest.raises(ImageError, match="cannot be written"):
+    with pytest.raises(ImageWriteError, match="cannot be written"):
         check(tmp_path / "file" / "a.exr")
     assert os.listdir(tmp_path) == ["file"]
 
@@ -87,7 +89,7 @@ def test_fault_loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str, 
         error = None
         try:
             atomic_write(path, DATA)
-        except ImageError as raised:
+        except ImageWriteError as raised:
             error = raised
         finally:
             monkeypatch.setattr(os, call, real)
@@ -97,7 +99,9 @@ def test_fault_loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str, 
             assert calls < n
             return
         assert path.read_bytes() in (b"old", DATA)
+        assert isinstance(error, OSError)
         assert isinstance(error.__cause__, OSError)
+        assert error.errno == errno.ENOSPC
         assert str(error) == f"{path}: cannot be written: No space left on device"
     pytest.fail("the faults never ended")
 

@@ -113,10 +113,10 @@ def _image(film: Film, **metadata: object) -> Image:
 
 
 def test_images_of_one_scene_merge_and_add_their_times(make_film: FilmMaker) -> None:
-    parts = [_image(make_film(i, i + 4), render_seconds=1.5) for i in (4, 0, 8)]
+    parts = [_image(make_film(i, i + 4), render_seconds=1.5, rays=100) for i in (4, 0, 8)]
     merged = Image.merge(parts)
     assert merged.film.identical(make_film(0, 12))
-    assert merged.metadata["render_seconds"] == 4.5
+    assert (merged.metadata["render_seconds"], merged.metadata["rays"]) == (4.5, 300)
     assert "mixed" not in merged.metadata
 
 

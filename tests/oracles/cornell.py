@@ -4,12 +4,14 @@ The box is built from the committed measurement files alone (`accuray/data`), in
 of the ceiling, the floor leaves out what the blocks stand on, the red wall (which is not planar) is split along the
 diagonal from its first to its third listed corner, and the open front is a black surface called `opening`.
 
-`python -m oracles.cornell`, run in the folder `tests`, solves the box on all meshes and rewrites `cornell_radiosity.json`.
+Run in the folder `tests`, `python -m oracles.cornell` solves the box on all meshes and rewrites the stored solution
+(`cornell_radiosity.json`); that takes a few minutes and 1 GB.
 """
 
 from __future__ import annotations
 
 import json
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -75,7 +77,10 @@ def cornell_spectra(wavelengths: list[float]) -> tuple[dict[str, Array], Array]:
 
 
 def solve_cornell(refinement: int) -> Solution:
-    """Solve the box at the three wavelengths, each macro element divided into refinement x refinement elements."""
+    """Solve the box at the three wavelengths, each macro element divided into refinement x refinement elements.
+
+    The floor has the finest elements: it carries the blocks' shadows, and their dark faces see little else.
+    """
     scene = cornell_box()
     macros = macro_elements(scene, size=100.0, finer={"floor": 50.0})
     return solve(scene, mesh(scene, macros, refinement), cornell_spectra(WAVELENGTHS)[0], "light")
@@ -108,7 +113,7 @@ def main() -> None:
         "limit": {name: _rounded(values) for name, values in limits.items()},
         "levels": [_level(*entry) for entry in zip(REFINEMENTS, solutions, strict=True)],
     }
-    text = json.dumps(document, indent=1)
+    text = re.sub(r"\s+(?=[\d\]])", " ", json.dumps(document, indent=1))
     REFERENCE.write_text(text + "\n", encoding="utf-8")
 
 

@@ -181,9 +181,9 @@ def factors(points: Array, normal: Array, targets: Patches, standing_on: int | N
     result = _unoccluded(points, normal, targets)
     above = np.einsum("vi,i->v", targets.vertices, normal)[:, None] - points @ normal
     outside = (above < -TOLERANCE).astype(np.uint8)
-    horizon, hidden = _corner_codes(outside, targets.quads)
-    hidden |= _corner_codes((above <= TOLERANCE).astype(np.uint8), targets.quads)[1]
-    hidden = hidden.astype(bool) | (points @ targets.normal - targets.offset <= TOLERANCE)
+    horizon = _corner_codes(outside, targets.quads)[0]
+    below = _corner_codes((above <= TOLERANCE).astype(np.uint8), targets.quads)[1]
+    hidden = below.astype(bool) | (points @ targets.normal - targets.offset <= TOLERANCE)
     special = horizon.astype(bool)
 
     occluders = []
@@ -276,8 +276,8 @@ def _clipped(
 
 
 def _within(polygons: Array, cones: Array, codes: NDArray[np.uint8]) -> Array:
-    """Clip polygons (M, n, 3) to their cones (M, K, 3), using only the planes named by the codes (M,): (M, n + K, 3)."""
-    count, corners, _ = polygons.shape
+    """Clip polygons (M, n, 3) to their cones (M, K, 3) with the planes that the codes (M,) name: (M, n + K, 3)."""
+    corners = polygons.shape[1]
     clipped = np.repeat(polygons[:, :1], corners + cones.shape[1], axis=1)
     clipped[:, :corners] = polygons
     for k in range(cones.shape[1]):

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .enclosure import Enclosure, Piece
-from .form_factors import Array, Integers, Patches, factors
+from .form_factors import Array, Patches, factors
 
 CHUNK = 256
 """Receiving points handled at once: bounds the memory of one step."""

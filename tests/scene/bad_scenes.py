@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,11 +19,10 @@ class BadScene:
     """Files to write into an empty folder; ``main`` is the scene to load."""
 
     name: str
-    files: dict[str, str | bytes]
+    files: Mapping[str, str | bytes]
     expected: tuple[str, ...]
     main: str = "scene.toml"
     overrides: tuple[str, ...] = ()
-    needs_core: bool = False
     prepare: Callable[[Path], None] | None = field(default=None, compare=False)
 
     def write(self, folder: Path) -> Path:
@@ -38,16 +37,28 @@ class BadScene:
 
 
 def scene(
-    name: str, text: str, *expected: str, files: dict[str, str | bytes] | None = None, **more: object
+    name: str,
+    text: str,
+    *expected: str,
+    files: Mapping[str, str | bytes] | None = None,
+    overrides: tuple[str, ...] = (),
+    prepare: Callable[[Path], None] | None = None,
 ) -> BadScene:
     """A case whose scene is ``accuray = 1`` and then ``text``, whose first line is line 2."""
-    return BadScene(name, {"scene.toml": f"accuray = 1\n{text}", **(files or {})}, expected, **more)  # type: ignore[arg-type]
+    written = {"scene.toml": f"accuray = 1\n{text}", **(files or {})}
+    return BadScene(name, written, expected, overrides=overrides, prepare=prepare)
 
 
-def material(name: str, value: str, *expected: str, **more: object) -> BadScene:
+def material(
+    name: str,
+    value: str,
+    *expected: str,
+    files: Mapping[str, str | bytes] | None = None,
+    prepare: Callable[[Path], None] | None = None,
+) -> BadScene:
     """A case about the reflectance in line 4 of a scene."""
     text = f'[materials.floor]\ntype = "diffuse"\nreflectance = {value}\n'
-    return scene(name, text, "scene.toml:4: materials.floor.reflectance", *expected, **more)  # type: ignore[arg-type]
+    return scene(name, text, "scene.toml:4: materials.floor.reflectance", *expected, files=files, prepare=prepare)
 
 
 def csv(name: str, content: str | bytes, *expected: str, column: str = ', column = "white"') -> BadScene:
@@ -62,15 +73,15 @@ def emission(name: str, value: str, *expected: str) -> BadScene:
     return scene(f"emission-{name}", text, "scene.toml:4: materials.lamp.emission", *expected)
 
 
-def mesh(name: str, text: str, *expected: str, **more: object) -> BadScene:
-    """A case about a mesh whose own keys begin in line 6."""
+def mesh(name: str, text: str, *expected: str, files: Mapping[str, str | bytes] | None = None) -> BadScene:
+    """A case about a mesh whose own keys begin in line 7."""
     head = '[materials.m]\ntype = "diffuse"\n[shapes.s]\ntype = "mesh"\nmaterial = "m"\n'
-    return scene(f"mesh-{name}", head + text, *expected, **more)  # type: ignore[arg-type]
+    return scene(f"mesh-{name}", head + text, *expected, files=files)
 
 
 def mesh_file(name: str, file: str, content: str | bytes, *expected: str) -> BadScene:
     """A case about the content of a mesh file."""
-    return mesh(f"file-{name}", f'file = "{file}"\n', file, *expected, files={file: content}, needs_core=True)
+    return mesh(f"file-{name}", f'file = "{file}"\n', file, *expected, files={file: content})
 
 
 def _fifo(folder: Path) -> None:
@@ -94,14 +105,14 @@ SYNTAX = [
     BadScene("not-utf8", {"scene.toml": b"accuray = 1\n# \xff\n"}, ("scene.toml:2", "byte 14", "UTF-8")),
     scene("toml-syntax", "[film\nwidth = 3\n", "scene.toml:2", "column 6", "TOML syntax error", "[film"),
     scene("toml-duplicate-key", "[film]\nwidth = 3\nwidth = 4\n", "scene.toml:4", "TOML"),
-    scene("toml-huge-integer", f"[film]\nwidth = {'9' * 5000}\n", "scene.toml", "4300 digits"),
-    scene("toml-deep-arrays", f"x = {'[' * DEEP}{']' * DEEP}\n", "scene.toml", "nested too deeply"),
+    scene("toml-huge-integer", f"[film]\nwidth = {'9' * 5000}\n", "scene.toml:3", "4300 digits", "999"),
+    scene("toml-deep-arrays", f"x = {'[' * DEEP}{']' * DEEP}\n", "scene.toml:2", "nested too deeply", "[[[["),
     BadScene("json-syntax", {"s.json": '{"accuray": 1,\n}'}, ("s.json:2", "JSON syntax error", "}"), main="s.json"),
     BadScene("json-list", {"s.json": "[1]"}, ("s.json", "[1]", '{"accuray": 1'), main="s.json"),
     BadScene("json-nan", {"s.json": '{"accuray": 1, "film": {"exposure": NaN}}'}, ("s.json", "NaN"), main="s.json"),
     BadScene("json-twice", {"s.json": '{"accuray": 1, "film": {}, "film": {}}'}, ("s.json", '"film"'), main="s.json"),
     BadScene(
-        "json-deep", {"s.json": f'{{"accuray": 1, "x": {"[" * 10**6}'}, ("s.json", "nested too deeply"), main="s.json"
+        "json-deep", {"s.json": f'{{"accuray": 1, "x": {"[" * 10**6}'}, ("s.json:1", "nested too deeply"), main="s.json"
     ),
     BadScene(
         "json-value",
@@ -268,6 +279,7 @@ SPECTRA = [
     emission("negative", "-1", "-1 is out of range", "at least 0"),
     emission("illuminant", '"D66"', '"D66" is not a known spectrum or illuminant', 'did you mean "D65"'),
     emission("watts", '"10 W/sr"', '"10 W/sr" has the wrong unit', "W/(m^2 sr nm)"),
+    emission("too-large", '"1e400 W/(m^2 sr nm)"', "too large a number"),
     emission("lumen", '"800 lm"', '"800 lm" has the wrong unit'),
     emission("cold", '"5 K"', '"5 K" is out of range', "500 to 100000 K"),
     emission("black-normalized", "{ value = 0, normalize = true }", "no visible light"),
@@ -373,6 +385,15 @@ INCLUDES = [
         files={f"f{i}.toml": f'accuray = 1\ninclude = ["f{i + 1}.toml"]\n' for i in range(40)},
     ),
     scene(
+        "include-bomb",
+        'include = ["f0.toml", "f0.toml"]\n',
+        ".toml:2: include[",
+        "one file too many",
+        "1000 files",
+        files={f"f{i}.toml": f'accuray = 1\ninclude = ["f{i + 1}.toml", "f{i + 1}.toml"]\n' for i in range(30)}
+        | {"f30.toml": "accuray = 1\n"},
+    ),
+    scene(
         "include-no-version", 'include = ["b.toml"]\n', "b.toml", "has no format version", files={"b.toml": "a = 1\n"}
     ),
     scene(
@@ -396,7 +417,13 @@ OVERRIDES = [
 MESHES = [
     mesh("nothing", "", "scene.toml:4: shapes.s", "exactly one of file | positions with faces"),
     mesh("no-faces", TRIANGLE, "scene.toml:4: shapes.s", "lacks `faces`"),
-    mesh("both", 'file = "a.obj"\n' + TRIANGLE, "shapes.s.positions", "`file` and `positions` at once"),
+    mesh(
+        "both",
+        'file = "a.obj"\n' + TRIANGLE,
+        "shapes.s.positions",
+        "`file` and `positions` at once",
+        files={"a.obj": ""},
+    ),
     mesh("index", TRIANGLE + "faces = [[0, 1, 3]]\n", "scene.toml:8: shapes.s.faces", "vertex 3 does not", "0 to 2"),
     mesh("index-negative", TRIANGLE + "faces = [[0, 1, -1]]\n", "scene.toml:8: shapes.s.faces[0][2]: -1"),
     mesh("index-float", TRIANGLE + "faces = [[0, 1, 2.0]]\n", "shapes.s.faces[0][2]: 2.0 is not a vertex index"),

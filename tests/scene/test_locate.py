@@ -120,6 +120,10 @@ def test_every_path_of_a_json_text_is_found_on_its_line(tree: dict[str, Any]) ->
             assert shown.strip().rstrip(",") == json.dumps(item)
 
 
+def test_a_key_of_very_many_parts_ends() -> None:
+    assert locate(".".join("a" * 100_000) + " = 1", "toml", ("a", "a", "b")) == 1
+
+
 @STEADY
 @given(st.text(max_size=200), st.sampled_from(["toml", "json"]))
 def test_any_text_ends(text: str, syntax: str) -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scene_support import STEADY
 
 from accuray import data
-from accuray.scene import SceneError
+from accuray.scene import SceneError, paths
 from accuray.scene.errors import Document, Source, Where
 from accuray.scene.paths import Confinement
 
@@ -62,7 +62,7 @@ def test_links(tree: Path) -> None:
     ["", ".", "..", "/", "../secret.csv", "sub/../../secret.csv", "/dev/zero", "/dev/null", "~/x.csv", "~root/x.csv",
      "http://localhost/a.csv", "file:///etc/passwd", "FILE:a.csv", "a.csv\0", "a\n.csv", "\\\\?\\a.csv", "x" * 4096,
      "builtin:", "builtin:../scene/__init__.py", "builtin:README.md", "builtin:/etc/passwd", "missing.csv", "sub", None,
-     3, b"a.csv", ["a.csv"], "/proc/self/environ", "a.csv/", "a.csv/../../secret.csv"],
+     3, b"a.csv", ["a.csv"], "/proc/self/environ", "a.csv/../../secret.csv"],
 )  # fmt: skip
 def test_refused(tree: Path, name: object) -> None:
     with pytest.raises(SceneError):
@@ -70,7 +70,7 @@ def test_refused(tree: Path, name: object) -> None:
 
 
 def test_size_limit(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("accuray.scene.paths", fromlist=["x"]).MAX_BYTES, ".csv", 3)
+    monkeypatch.setitem(paths.MAX_BYTES, ".csv", 3)
     with pytest.raises(SceneError, match="too large"):
         resolve(tree, "a.csv")
 

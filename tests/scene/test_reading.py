@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scene_support import has_core
 
 from accuray.formats import load
 from accuray.scene import Scene, SceneError
@@ -36,6 +35,16 @@ def test_toml_and_json_and_python_are_the_same_scene(tmp_path: Path) -> None:
     assert toml.materials == loaded.materials == built.materials
     assert toml.identity == loaded.identity == built.identity
     assert toml.path == tmp_path / "s.toml"
+
+
+@pytest.mark.parametrize(
+    "name", ["", ".", "/", "nowhere/s.toml", "s.toml\0", "x" * 5000 + ".toml", "/dev/zero", "s.txt"]
+)
+def test_scene_path_that_is_no_scene_file(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.txt").write_text("accuray = 1\n", encoding="utf-8")
+    with pytest.raises(SceneError):
+        load(name)
 
 
 def test_byte_order_mark_and_windows_line_ends(tmp_path: Path) -> None:
@@ -165,7 +174,6 @@ def test_mesh_file_fills_the_arrays(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert scene.identity == same.identity, "what a mesh holds counts, not where it came from"
 
 
-@pytest.mark.skipif(not has_core(), reason="needs the compiled module")
 def test_mesh_file_through_the_compiled_reader(tmp_path: Path) -> None:
     write(tmp_path, s='[materials.m]\ntype = "diffuse"\n[shapes.s]\ntype = "mesh"\nmaterial = "m"\nfile = "a.obj"\n')
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", encoding="utf-8")

@@ -182,7 +182,8 @@ def test_cauchy_and_sellmeier() -> None:
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 10**400, "nan", "1e999", None, True, {}, [], object()])
 def test_no_form_takes_what_is_no_finite_number(role: str, bad: Any) -> None:
     forms: list[Any] = [
-        bad, {"value": bad}, {"rgb": [0.1, bad, 0.1]}, [0.1, bad, 0.1], {"blackbody": bad}, {"value": 0.2, "scale": bad},
+        bad, {"value": bad}, {"rgb": [0.1, bad, 0.1]}, [0.1, bad, 0.1], {"blackbody": bad},
+        {"value": 0.2, "scale": bad},
         {"wavelengths": [400, bad], "values": [0.1, 0.2]}, {"wavelengths": [400, 500], "values": [0.1, bad]},
         {"value": 0.2, "luminance": bad}, {"cauchy": [1.5, bad]}, {"sellmeier": {"B": [bad], "C": [0.1]}},
     ]  # fmt: skip

@@ -35,7 +35,7 @@ def test_leak_is_seen(tmp_path: Path, words: tuple[str, str]) -> None:
 
 
 def test_innocent_text_passes(tmp_path: Path) -> None:
-    plant(tmp_path, "docs/guide.md", "build/home/x and ./root/y, https://www.embree.org, pip install accuray\n")
+    plant(tmp_path, "docs/guide.md", "build/home/x and accuray/farm.py, https://www.embree.org, pip install accuray\n")
     result = check("check_leaks", tmp_path)
     assert result.returncode == 0, result.stdout
 

@@ -139,7 +139,8 @@ def test_total_reflection_and_brewster() -> None:
 def test_reflectance_is_the_same_from_both_sides() -> None:
     for degrees in (5, 35, 70):
         theta = math.radians(degrees)
-        close(optics.fresnel(theta, 1.5), optics.fresnel(optics.refracted(theta, 1.5), 1 / 1.5))
+        inside = math.asin(math.sin(theta) / 1.5)
+        close(optics.fresnel(theta, 1.5), optics.fresnel(inside, 1 / 1.5))
 
 
 def test_diffuse_reflectance() -> None:
@@ -211,7 +212,7 @@ def test_cornell_paints(paint: str) -> None:
 def test_cornell_lamp() -> None:
     reference = figures()["cornell_lamp_chromaticity"]
     assert expected()["C8.cornell-lamp-xy"] == pytest.approx((reference["x"], reference["y"]), abs=2e-5)
-    assert expected()["C8.cornell-lamp-rgb"] == pytest.approx(reference["linear_sRGB_Ynorm"], abs=3e-4)
+    assert expected()["C8.cornell-lamp-rgb"] == pytest.approx(reference["linear_sRGB_Ynorm"], abs=1e-4)
 
 
 def test_white_is_white_and_luminance_is_y() -> None:

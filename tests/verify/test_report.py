@@ -1,4 +1,4 @@
-"""The rule that judges a case, the choice of sample counts, and the report; the renderer is a stand-in with known noise."""
+"""The rule that judges a case, the choice of sample counts, and the report; known noise stands in for the renderer."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ pytest.importorskip("accuray._core", reason="the compiled module is not built")
 from accuray.verify import Case, all_cases, run
 
 SEED = int(os.environ.get("ACCURAY_TEST_SEED", "0"))
-SHARE = 6
+SHARE = 12
 
 #: Always run: one case for each kind of light, strategy, BSDF and unit of colour.
 ALWAYS = (

@@ -11,7 +11,8 @@ namespace accuray {
 struct Exhaustive {
   const SceneView* scene;
 
-  Hit closest(const Ray& ray) const {
+  // Never inlined: its loops would be repeated at every call and make the kernel slow to compile.
+  ACCURAY_NOINLINE Hit closest(const Ray& ray) const {
     Hit hit;
     hit.t = ray.far;
     meet(ray, 0, scene->root->top_geometries, none, hit);

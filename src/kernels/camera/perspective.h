@@ -27,10 +27,10 @@ struct Perspective {
               .preset = "\"vertical\"", .choices = "vertical|horizontal"},
         Param{.name = "focal_length", .kind = Kind::real,
               .doc = "Focal length; a bare number is in metres whatever length_unit says.", .low = 1e-6, .unit = "m",
-              .group = "field:film", .animatable = true},
+              .role = "absolute", .group = "field:film", .animatable = true},
         Param{.name = "film_size", .kind = Kind::real,
               .doc = "Size of the film on fov_axis; a bare number is in metres whatever length_unit says.", .low = 1e-6,
-              .unit = "m", .group = "field:film", .animatable = true});
+              .unit = "m", .role = "absolute", .group = "field:film", .animatable = true});
   }
 
   // x, y in [0, 1] from the upper left corner of the picture.

@@ -1,0 +1,91 @@
+"""What the benchmarks compare must be equal for all: geometry, colours, error measure. No renderer is needed."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks import measures, report, scenes, settings
+from benchmarks.drivers.ply import read_ply
+from benchmarks.geometry import bumpy_sphere, frame_around
+
+TO_REC709 = np.linalg.inv(
+    np.array([[0.4123908, 0.3575843, 0.1804808], [0.2126390, 0.7151687, 0.0721923], [0.0193308, 0.1191948, 0.9505322]])
+)
+HALF_LAST_DIGIT = 2e-5
+
+
+def test_bumpy_sphere_is_closed_and_its_normals_fit() -> None:
+    """Each edge is met once in each direction, positions deciding; the given normals are near those of the facets."""
+    mesh = bumpy_sphere("sphere", "white", (0.1, 0.2, 0.3), 0.16, segments=160, rings=80)
+    assert len(mesh.triangles) == 2 * 160 * 80
+    assert mesh.normals is not None
+    _, place = np.unique(mesh.positions, axis=0, return_inverse=True)
+    corners = place.reshape(-1)[mesh.triangles]
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    forward, backward = (set(map(tuple, pairs.tolist())) for pairs in (edges, edges[:, ::-1]))
+    assert forward == backward
+    assert len(forward) == len(edges)
+    a, b, c = (mesh.positions[mesh.triangles[:, k]].astype(np.float64) for k in range(3))
+    flat = np.cross(b - a, c - a)
+    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
+    assert np.sum(flat * mesh.normals[mesh.triangles[:, 0]], axis=1).min() > 0.9
+
+
+def test_frame_has_the_area_between_its_quads() -> None:
+    """A 3 x 4 rectangle less a unit square, all of it facing the same way."""
+    outer = [[0, 0, 0], [0, 0, 4], [3, 0, 4], [3, 0, 0]]
+    hole = [[1, 0, 1], [1, 0, 2], [2, 0, 2], [2, 0, 1]]
+    triangles = [np.array(quad, dtype=float)[[0, k, k + 1]] for quad in frame_around(outer, hole) for k in (1, 2)]
+    normals = [np.cross(t[1] - t[0], t[2] - t[0]) / 2 for t in triangles]
+    assert all(normal[1] > 0 for normal in normals)
+    assert np.sum(normals, axis=0) == pytest.approx([0, 11, 0])
+
+
+@pytest.mark.parametrize("name", ["white", "red", "green", "emission"])
+def test_rgb_is_that_of_the_spectrum(name: str) -> None:
+    """The constants for RGB renderers follow from the measured spectra."""
+    scene = scenes.build("cornell")
+    cie = np.loadtxt(scenes.DATA / "cie1931_2deg_1nm.csv", delimiter=",", comments=["#", "w"])
+    lights = np.loadtxt(scenes.DATA / "cie_illuminants_300_830_5nm.csv", delimiter=",", comments=["#", "w"])
+    spectrum = scene.emission if name == "emission" else scene.reflectances[name]
+    values = np.interp(cie[:, 0], spectrum.wavelengths, spectrum.values, left=0, right=0)
+    light = np.ones(len(cie)) if name == "emission" else np.interp(cie[:, 0], lights[:, 0], lights[:, 3])
+    xyz = cie[:, 1:].T @ (values * light) / (cie[:, 2] @ light)
+    assert TO_REC709 @ xyz == pytest.approx(spectrum.rgb, abs=HALF_LAST_DIGIT, rel=HALF_LAST_DIGIT)
+
+
+def test_all_forms_of_a_scene_hold_the_same_geometry(tmp_path: Path) -> None:
+    """PLY and TOML give back every bit of the positions."""
+    scene = scenes.build("cornell")
+    folder = scenes.write(scene, tmp_path, size=16)
+    neutral = json.loads((folder / "scene.json").read_text())
+    text = tomllib.loads((folder / "scene.toml").read_text())
+    for mesh, described in zip(scene.meshes, neutral["meshes"], strict=True):
+        positions, triangles = read_ply(folder / described["file"])
+        assert np.array_equal(positions, mesh.positions)
+        assert np.array_equal(triangles, mesh.triangles)
+        assert np.array_equal(np.array(text["shapes"][mesh.name]["positions"], dtype=np.float32), mesh.positions)
+        assert text["shapes"][mesh.name]["faces"] == mesh.triangles.tolist()
+
+
+def test_relative_mse_ignores_units_and_sees_noise() -> None:
+    """A noise of 10 % has the relMSE that its definition gives, in any unit of radiance."""
+    reference = np.broadcast_to(np.array([0.24, 0.14, 0.06], dtype=np.float32), (8, 8, 3)).copy()
+    noisy = reference * np.where(np.arange(8) % 2, 1.1, 0.9).astype(np.float32)[:, None, None]
+    scaled = reference.astype(np.float64) * measures.common_scale(reference)
+    expected = np.mean(0.01 * scaled**2 / (scaled**2 + settings.RELATIVE_MSE_OFFSET))
+    assert measures.relative_mse([noisy], reference) == pytest.approx(expected, rel=1e-5)
+    assert measures.relative_mse([noisy * 1000], reference * 1000) == pytest.approx(expected, rel=1e-5)
+
+
+def test_ratio_is_to_the_best_peer() -> None:
+    """A renderer without a figure is left out."""
+    rows = [{"renderer": "accuray", "samples_per_s": 4.0}, {"renderer": "cycles", "samples_per_s": 2.0}]
+    rows += [{"renderer": "mitsuba:llvm_ad_spectral:independent", "samples_per_s": 5.0}, {"renderer": "luxcore"}]
+    found = {row["what"]: row for row in report.ratios({"cornell": rows, "million": rows})}
+    assert found["samples/s of Cycles"]["ratio"] == 2.0
+    assert found["samples/s of the fastest peer, 1 M triangles"]["ratio"] == 0.8
+    assert [row["met"] for row in found.values()] == [False, False, False]
