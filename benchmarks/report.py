@@ -73,4 +73,4 @@ def limits(figures: Sequence[tuple[str, float, float, bool]]) -> list[dict[str, 
 
 
 RATIO_COLUMNS = {"what": "AccuRay's ratio to", "ratio": "ratio|.2f", "wanted": "wanted|.2f", "met": "met"}
-LIMIT_COLUMNS = {"what": "AccuRay", "measured": "measured|.3g", "limit": "limit|.3g", "met": "met"}
+LIMIT_COLUMNS = {"what": "what", "measured": "measured|.3g", "limit": "limit|.3g", "met": "met"}

@@ -32,6 +32,7 @@ SPEED_COLUMNS = {
 EFFICIENCY_COLUMNS = {
     "renderer": "renderer",
     "efficiency": "efficiency|.3g",
+    "per_cpu_second": "per CPU s|.3g",
     "relative_mse": "relMSE|.3g",
     "seconds": "render s|.2f",
     "spp": "spp|g",
@@ -110,6 +111,7 @@ def _efficiency_row(contender: Contender, answer: Row, images: Sequence[measures
     return {
         "renderer": contender.name,
         "efficiency": measures.efficiency(error, seconds),
+        "per_cpu_second": measures.efficiency(error, median(run["cpu_s"])),
         "relative_mse": error,
         "error_times_spp": error * run["spp"],
         "seconds": seconds,

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from accuray import devices
+from accuray.data.version import __version__
+from accuray.data.version import __version__
 from accuray.scene import Scene
 from accuray.scene import schema as schemas
 from accuray.scene.spectrum import xyz
-from accuray.data.version import __version__
 
 
 def image_metadata(

@@ -36,7 +36,7 @@ class LuxCore:
         return samples / float(self.description["width"] * self.description["height"])
 
     def image(self) -> Image:
-        """The raw film; LuxCore's rows start at the bottom."""
+        """The raw film; its rows start at the bottom, and the picture lies one row lower than the other renderers'."""
         height, width = self.description["height"], self.description["width"]
         pixels = np.empty((height, width, 3), dtype=np.float32)
         self.session.GetFilm().GetOutputFloat(self.lux.FilmOutputType.RGB, pixels)

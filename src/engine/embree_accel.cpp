@@ -12,7 +12,6 @@ namespace accuray {
 
 namespace {
 
-constexpr int kBuildArena = 4;
 constexpr uint32_t kCompactTriangles = 20000;
 
 RTCBounds bounds_of(Vec3 center, float radius) {
@@ -68,7 +67,7 @@ bool count_memory(void* total, ssize_t bytes, bool) {
 }  // namespace
 
 EmbreeScene::EmbreeScene(const SceneView& view) : view_(view), first_instance_(view.root->top_geometries) {
-  device_ = rtcNewDevice("isa=avx2,frequency_level=simd256,threads=4");
+  device_ = rtcNewDevice("isa=avx2,frequency_level=simd256");
   if (device_ == nullptr) check("starting Embree");
   rtcSetDeviceMemoryMonitorFunction(device_, count_memory, &bytes_);
   scene_ = rtcNewScene(device_);
@@ -130,7 +129,7 @@ void EmbreeScene::commit(RTCScene target) {
   if (triangles > kCompactTriangles) flags |= RTC_SCENE_FLAG_COMPACT;
   rtcSetSceneFlags(target, static_cast<RTCSceneFlags>(flags));
   rtcSetSceneBuildQuality(target, RTC_BUILD_QUALITY_MEDIUM);
-  tbb::task_arena arena(kBuildArena);
+  tbb::task_arena arena(1);
   arena.execute([&] { rtcCommitScene(target); });
   check("building the acceleration structure");
 }

@@ -20,7 +20,7 @@ struct EmbreeError : std::runtime_error {
 //
 // The build must not depend on the number of threads: where two triangles are met at the same distance, their order in
 // a leaf decides which one is the hit, and Embree's parallel partition orders a leaf by the number of tasks. So it
-// always builds in an arena of the same nominal size, however many cores there are.
+// builds with one thread.
 class EmbreeScene {
  public:
   explicit EmbreeScene(const SceneView& view);

@@ -151,10 +151,11 @@ TEST(RgbTable, ThreadsChangeNothing) {
 
 TEST(RgbTable, LookupAtNodesIsTheNode) {
   const Fixture& f = fixture();
-  int n = kRgbTableNodes, k = 20, y = 7, x = 11;
-  double largest = f.nodes[static_cast<size_t>(k)];
-  Sigmoid c = look_up(largest * y / (n - 1), largest, largest * x / (n - 1));  // green is largest, blue is next
-  const float* node = &f.coefficients[static_cast<size_t>((((1 * n + k) * n + y) * n + x) * 3)];
+  size_t n = kRgbTableNodes, k = 20, y = 7, x = 11;
+  double largest = f.nodes[k], step = 1.0 / static_cast<double>(n - 1);
+  // Green is largest, blue is next.
+  Sigmoid c = look_up(largest * static_cast<double>(y) * step, largest, largest * static_cast<double>(x) * step);
+  const float* node = &f.coefficients[((n + k) * n + y) * n * 3 + x * 3];
   EXPECT_FLOAT_EQ(c.c0, node[0]);
   EXPECT_FLOAT_EQ(c.c1, node[1]);
   EXPECT_FLOAT_EQ(c.c2, node[2]);
@@ -190,8 +191,8 @@ TEST(RgbTable, ReflectancesStayWithinZeroAndOne) {
     for (double g : {0.0, 1e-20, 1e-3, 0.7, 1.0}) {
       for (double b : {0.0, 1e-8, 0.5, 0.999, 1.0}) {
         Sigmoid c = look_up(r, g, b);
-        for (float lambda = 360.0f; lambda <= 830.0f; lambda += 10.0f) {
-          float f = sigmoid_eval(c, lambda);
+        for (int lambda = 360; lambda <= 830; lambda += 10) {
+          float f = sigmoid_eval(c, static_cast<float>(lambda));
           ASSERT_TRUE(f >= 0.0f && f <= 1.0f) << r << " " << g << " " << b << " at " << lambda << ": " << f;
         }
       }

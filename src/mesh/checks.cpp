@@ -45,9 +45,7 @@ void drop_triangles(MeshData& mesh) {
     } else if (!has_area(a, b, c)) {
       ++mesh.report.degenerate_triangles;
     } else {
-      if (kept != corner)
-        std::copy_n(mesh.indices.begin() + static_cast<ptrdiff_t>(corner), 3,
-                    mesh.indices.begin() + static_cast<ptrdiff_t>(kept));
+      for (size_t i = 0; i < 3; ++i) mesh.indices[kept + i] = mesh.indices[corner + i];
       kept += 3;
     }
   }

@@ -31,15 +31,16 @@ TEST(Normals, DoNotDependOnHowAFaceIsCut) {
 }
 
 TEST(Normals, OfASphereAreRadial) {
-  constexpr int rings = 24, sectors = 48;
+  constexpr uint32_t rings = 24, sectors = 48;
   Floats positions;
   Indices indices;
-  for (int i = 0; i <= rings; ++i) {
-    for (int j = 0; j <= sectors; ++j) {  // the last column repeats the first: a seam
+  for (uint32_t i = 0; i <= rings; ++i) {
+    for (uint32_t j = 0; j <= sectors; ++j) {  // the last column repeats the first: a seam
       double theta = M_PI * i / rings, phi = 2.0 * M_PI * (j % sectors) / sectors;
       double ring = i == 0 || i == rings ? 0.0 : std::sin(theta);
-      for (double x : {ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)})
+      for (double x : {ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)}) {
         positions.push_back(static_cast<float>(x));
+      }
     }
   }
   for (uint32_t i = 0; i < rings; ++i) {
@@ -58,7 +59,7 @@ TEST(Normals, OfASphereAreRadial) {
   EXPECT_GT(worst, std::cos(0.02));
   // Both sides of the seam agree to the bit.
   for (size_t i = 0; i <= rings; ++i) {
-    size_t first = 3 * i * (sectors + 1), last = first + 3 * sectors;
+    size_t first = 3 * i * (sectors + 1), last = first + size_t{3} * sectors;
     for (size_t j = 0; j < 3; ++j) EXPECT_EQ(normals[first + j], normals[last + j]);
   }
 }

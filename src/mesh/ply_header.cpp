@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -94,8 +95,8 @@ class HeaderReader {
   void read_element(Words& words) {
     std::string_view name = words.word(), count_text = words.word();
     PlyElement element{std::string(name), 0, input_.line()};
-    const char* end = count_text.data() + count_text.size();
-    auto [stop, error] = std::from_chars(count_text.data(), end, element.count);
+    const char* end = std::to_address(count_text.end());
+    auto [stop, error] = std::from_chars(std::to_address(count_text.begin()), end, element.count);
     if (count_text.empty() || stop != end || error != std::errc{} || !words.at_end()) {
       fail("element line", line_, "is wrong", "element NAME COUNT");
     }

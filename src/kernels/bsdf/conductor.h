@@ -24,7 +24,7 @@ struct Conductor {
 
   static constexpr const char* name = "conductor";
   static constexpr const char* doc = "A perfectly smooth metal with the exact Fresnel reflectance, in vacuum or air.";
-  static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
+  static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
     return param_list(
         Param{.name = "metal", .kind = Kind::text,

@@ -46,7 +46,7 @@ struct Dielectric {
   static constexpr const char* name = "dielectric";
   static constexpr const char* doc =
       "A perfectly smooth surface of glass, water and the like: exact Fresnel reflection and refraction with dispersion.";
-  static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
+  static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
     return param_list(Param{.name = "ior", .kind = Kind::spectrum,
                             .doc = "Index behind the surface relative to the index before it: a number, a named glass "

@@ -35,9 +35,9 @@ struct PathTracing {
               .preset = "\"mis\"", .choices = "mis|light|bsdf", .member = ACCURAY_OFFSET_OF(PathTracing, strategy)});
   }
 
-  bool may_scatter(const Path& path) const {
-    return (max_depth < 0 || path.depth < static_cast<uint32_t>(max_depth)) &&
-           (depth_budget == 0 || path.spent <= static_cast<uint32_t>(depth_budget));
+  bool may_scatter(const Path& path) const { return max_depth < 0 || path.depth < static_cast<uint32_t>(max_depth); }
+  bool can_afford(const Path& path, uint32_t lobe) const {
+    return depth_budget == 0 || path.spent + depth_cost(lobe) <= static_cast<uint32_t>(depth_budget);
   }
 
   // Step shade_surface: emission, direct light, and the direction in which the path goes on.
@@ -73,9 +73,12 @@ struct PathTracing {
       using Bsdf = typename decltype(type)::type;
       const auto bsdf = scene.as<Bsdf>(material.bsdf).at(scene, path.wl);
       if constexpr (!decltype(bsdf)::delta_only) {
-        sample_light(scene, accel, strategy, surface, frame, bsdf, wo, u_light, u_choice, path);
+        if (can_afford(path, lobe_diffuse)) {
+          sample_light(scene, accel, strategy, surface, frame, bsdf, wo, u_light, u_choice, path);
+        }
       }
-      return scatter(surface, frame, bsdf.sample(wo, u_lobe, u_bsdf), path);
+      const BsdfSample sample = bsdf.sample(wo, u_lobe, u_bsdf);
+      return can_afford(path, sample.lobe) && scatter(surface, frame, sample, path);
     });
     if (path.alive) path.alive = survives(path, static_cast<uint32_t>(roulette_depth), u_roulette);
   }

@@ -26,18 +26,15 @@ struct LightSample {
 
 inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0.0f, 0.0f, 0.0f}; }
 
-// Below this solid angle (sr) a flat light is sampled by area: the density per solid angle hardly varies over it then,
-// and the spherical formulas lose digits as 1e-7 / solid angle.
-constexpr float least_spherical = 0.3f;
-constexpr float most_spherical = 6.2f;
-
-// Rough solid angle of a flat light around `middle`; decides how it is sampled, so it must be the same function of the
-// reference wherever it is asked for.
-inline float rough_solid_angle(Vec3 reference, Vec3 middle, Vec3 normal, float area) {
-  const Vec3 d = middle - reference;
-  const float squared = length_squared(d);
-  return squared > 0.0f ? area * abs(dot(normal, d)) / (squared * sqrt(squared)) : infinity;
+// A flat light is sampled by solid angle from near by, where the density of its points varies without bound, and by area
+// from afar, where that is as good and cheaper. The same function of the reference decides in sample() and pdf().
+inline bool is_near(Vec3 reference, Vec3 middle, float radius_squared) {
+  return length_squared(middle - reference) < 16.0f * radius_squared;
 }
+
+// Solid angles beyond these bounds (sr) are left to area sampling too: the spherical formulas err by 1e-7 sr.
+constexpr float least_spherical = 1e-3f;
+constexpr float most_spherical = 6.2f;
 
 // Density per solid angle of a point chosen uniformly over `area`.
 inline float area_to_solid_angle(float area, float distance_squared, float cosine) {

@@ -71,25 +71,25 @@ struct QuadLight {
 
   Vec3 at(Vec2 u) const { return fma(u.x * width, x, fma(u.y * height, y, corner)); }
   float area() const { return width * height; }
-  bool spherical(Vec3 reference) const {
-    return rough_solid_angle(reference, at({0.5f, 0.5f}), normal, area()) > least_spherical;
+  // Whether the rectangle is to be sampled by solid angle; then `seen` is filled.
+  bool spherical(Vec3 reference, SphericalRectangle& seen) const {
+    if (!is_near(reference, at({0.5f, 0.5f}), 0.25f * fma(width, width, height * height))) return false;
+    seen = SphericalRectangle::of(reference, corner, x, y, width, height);
+    return seen.area > least_spherical && seen.area < most_spherical;
   }
 
   LightSample sample(Vec3 reference, Vec2 u) const {
-    if (!spherical(reference)) return sample_towards(reference, at(u), error, normal, area());
-    const SphericalRectangle r = SphericalRectangle::of(reference, corner, x, y, width, height);
-    if (!(r.area > 0.0f) || r.z0 == 0.0f) return no_light();
-    const Vec3 d = r.sample(u);
+    SphericalRectangle seen;
+    if (!spherical(reference, seen)) return sample_towards(reference, at(u), error, normal, area());
+    const Vec3 d = seen.sample(u);
     const float distance = length(d);
-    return {d * (1.0f / distance), reference + d, error, normal, distance, 1.0f / r.area, 1.0f};
+    return {d * (1.0f / distance), reference + d, error, normal, distance, 1.0f / seen.area, 1.0f};
   }
 
-  float pdf(Vec3 reference, Vec3 wi, const Surface& at_light) const {
-    if (!spherical(reference)) {
-      return area_to_solid_angle(area(), length_squared(at_light.point - reference), abs(dot(normal, wi)));
-    }
-    const SphericalRectangle r = SphericalRectangle::of(reference, corner, x, y, width, height);
-    return r.area > 0.0f && r.z0 != 0.0f ? 1.0f / r.area : 0.0f;
+  float pdf(Vec3 reference, Vec3 wi, const Surface& on_light) const {
+    SphericalRectangle seen;
+    if (spherical(reference, seen)) return 1.0f / seen.area;
+    return area_to_solid_angle(area(), length_squared(on_light.point - reference), abs(dot(normal, wi)));
   }
   float power_per_radiance(float) const { return pi * area(); }
 };

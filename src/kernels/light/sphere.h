@@ -11,6 +11,9 @@ struct SphereLight {
 
   static constexpr bool delta = false;
 
+  // Points nearer than this count as inside: those of the sphere itself must, on whichever side rounding puts them.
+  static constexpr float most_outside = 0.9999f;
+
   // sin^2 of half the angle that the sphere fills; 1 or more inside.
   float sin2_max(Vec3 reference) const { return radius * radius / length_squared(reference - center); }
   Vec3 error() const {
@@ -23,7 +26,7 @@ struct SphereLight {
 
   LightSample sample(Vec3 reference, Vec2 u) const {
     const float sin2 = sin2_max(reference);
-    if (!(sin2 < one_minus_epsilon)) {
+    if (!(sin2 < most_outside)) {
       const Vec3 n = square_to_sphere(u);
       return sample_towards(reference, fma(radius, n, center), error(), n, area());
     }
@@ -46,7 +49,7 @@ struct SphereLight {
 
   float pdf(Vec3 reference, Vec3 wi, const Surface& at) const {
     const float sin2 = sin2_max(reference);
-    if (sin2 < one_minus_epsilon) return 0.5f * inv_pi / one_minus_cos(sin2);
+    if (sin2 < most_outside) return 0.5f * inv_pi / one_minus_cos(sin2);
     return area_to_solid_angle(area(), length_squared(at.point - reference), abs(dot(at.normal, wi)));
   }
   float power_per_radiance(float) const { return pi * area(); }

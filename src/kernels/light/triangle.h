@@ -44,38 +44,40 @@ struct TriangleLight {
 
   static constexpr bool delta = false;
 
-  float rough(Vec3 reference) const {
-    return rough_solid_angle(reference, (p0 + p1 + p2) * (1.0f / 3.0f), normal, area);
-  }
-  // Solid angle to sample by; 0 where area sampling is better.
-  float solid_angle(Vec3 a, Vec3 b, Vec3 c) const {
-    const float w = spherical_triangle_area(a, b, c);
-    return w < most_spherical ? w : 0.0f;
+  // The triangle as seen from a reference.
+  struct Seen {
+    Vec3 a, b, c;
+    float solid_angle;  // 0: to be sampled by area
+  };
+  Seen seen_from(Vec3 reference) const {
+    const Vec3 middle = (p0 + p1 + p2) * (1.0f / 3.0f);
+    const float radius_squared =
+        max(length_squared(p0 - middle), max(length_squared(p1 - middle), length_squared(p2 - middle)));
+    Seen seen{};
+    if (!is_near(reference, middle, radius_squared)) return seen;
+    seen.a = normalize(p0 - reference);
+    seen.b = normalize(p1 - reference);
+    seen.c = normalize(p2 - reference);
+    const float w = spherical_triangle_area(seen.a, seen.b, seen.c);
+    seen.solid_angle = w > least_spherical && w < most_spherical ? w : 0.0f;
+    return seen;
   }
 
   LightSample sample(Vec3 reference, Vec2 u) const {
-    if (rough(reference) > least_spherical) {
-      const Vec3 a = normalize(p0 - reference);
-      const Vec3 b = normalize(p1 - reference);
-      const Vec3 c = normalize(p2 - reference);
-      const float w = solid_angle(a, b, c);
-      if (w > 0.0f) {
-        const Vec3 wi = sample_spherical_triangle(a, b, c, w, u);
-        const float approach = dot(normal, wi);
-        const float t = dot(normal, p0 - reference) / approach;
-        if (!(t > 0.0f && is_finite(t))) return no_light();
-        return {wi, fma(t, wi, reference), error, normal, t, 1.0f / w, 1.0f};
-      }
+    const Seen seen = seen_from(reference);
+    if (seen.solid_angle > 0.0f) {
+      const Vec3 wi = sample_spherical_triangle(seen.a, seen.b, seen.c, seen.solid_angle, u);
+      const float t = dot(normal, p0 - reference) / dot(normal, wi);
+      if (!(t > 0.0f && is_finite(t))) return no_light();
+      return {wi, fma(t, wi, reference), error, normal, t, 1.0f / seen.solid_angle, 1.0f};
     }
     const Vec2 b = square_to_triangle(u);
     return sample_towards(reference, fma(b.x, p1 - p0, fma(b.y, p2 - p0, p0)), error, normal, area);
   }
 
   float pdf(Vec3 reference, Vec3 wi, const Surface& at) const {
-    if (rough(reference) > least_spherical) {
-      const float w = solid_angle(normalize(p0 - reference), normalize(p1 - reference), normalize(p2 - reference));
-      if (w > 0.0f) return 1.0f / w;
-    }
+    const Seen seen = seen_from(reference);
+    if (seen.solid_angle > 0.0f) return 1.0f / seen.solid_angle;
     return area_to_solid_angle(area, length_squared(at.point - reference), abs(dot(normal, wi)));
   }
   float power_per_radiance(float) const { return pi * area; }
