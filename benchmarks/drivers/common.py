@@ -136,7 +136,8 @@ def _watch_memory(renderer: Renderer, task: dict[str, Any]) -> dict[str, Any]:
     watcher.join()
     resident.append(_memory("VmRSS"))
     late = resident[len(resident) * 3 // 4 :]
-    return {"resident_bytes": int(np.median(late)), "peak_bytes": _memory("VmHWM"), "observations": len(resident)}
+    peak = max(_memory("VmHWM"), *resident)
+    return {"resident_bytes": int(np.median(late)), "peak_bytes": peak, "observations": len(resident)}
 
 
 def _write(renderer: Renderer, task: dict[str, Any]) -> dict[str, Any]:

@@ -140,7 +140,7 @@ def test_schema_doctor_and_version() -> None:
     schema = json.loads(run("schema").stdout)
     assert "$schema" in schema
     assert "diffuse" in run("schema", "--reference").stdout
-    assert "Embree" in run("doctor").stdout
+    assert "embree" in run("doctor").stdout
     assert run("--version").stdout == f"accuray {accuray.__version__}\n"
 
 
