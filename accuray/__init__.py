@@ -1,9 +1,9 @@
 """AccuRay: a physically based spectral renderer whose results can be trusted, explained and repeated.
 
-    import accuray
-    scene = accuray.load("scenes/cornell-box.toml")
-    image = accuray.render(scene, spp=64)
-    image.save("cornell-box.exr")
+>>> import accuray
+>>> scene = accuray.load("scenes/cornell-box.toml")
+>>> image = accuray.render(scene, spp=64)
+>>> image.save("cornell-box.exr")
 """
 
 from __future__ import annotations

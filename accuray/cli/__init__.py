@@ -25,7 +25,10 @@ INTERRUPTED = 130
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line (default: that of this process) and returns its exit status; raises only SystemExit."""
-    arguments = sys.argv[1:] if arguments is None else list(arguments)
+    if arguments is None:
+        arguments = sys.argv[1:]
+        # Linear algebra is no part of what the command does: without this numpy starts a thread of it per processor.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     verbose = any(word in ("-v", "-vv", "--verbose") for word in arguments)
     try:
         status = dispatch(arguments)

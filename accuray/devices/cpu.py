@@ -23,9 +23,7 @@ class LoadedScene:
     core: Any
     reports: dict[str, MeshReport]
 
-    def render_pass(
-        self, film: Film, tiles: list[int], first: int, count: int, *, seed: int, threads: int
-    ) -> Any:
+    def render_pass(self, film: Film, tiles: list[int], first: int, count: int, *, seed: int, threads: int) -> Any:
         """Starts adding samples first .. first + count - 1 of some 16x16 tiles of the film's window.
 
         The pass (``wait(seconds)``, ``stop()``, ``done``, ``rays``, ``finished``) adds whole tiles only; what
@@ -54,7 +52,17 @@ class LoadedScene:
         from accuray._core import engine
 
         return engine.ray_pass(
-            self.core, film.sums, film.dropped, origins, directions, 0, count, seed, film.replicates, threads, wavelengths
+            self.core,
+            film.sums,
+            film.dropped,
+            origins,
+            directions,
+            0,
+            count,
+            seed,
+            film.replicates,
+            threads,
+            wavelengths,
         )
 
 

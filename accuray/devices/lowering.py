@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from math import fsum
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from accuray import data
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
+from accuray.scene.spectrum import interpolate
 
 Values = dict[str, Any]
 
@@ -103,7 +105,9 @@ class _Lowering:
                 numbers = [self._guard(f"shapes.{m}", partial(self._add_shape, m, others[m])) for m in members]
                 groups[members] = numbers[0]
             material = None if table["material"] is None else self.materials[table["material"]]
-            add = partial(self.builder.add_instance, groups[members], len(members), _matrix(table["transform"]), material)
+            add = partial(
+                self.builder.add_instance, groups[members], len(members), _matrix(table["transform"]), material
+            )
             self._guard(f"shapes.{name}", add)
 
     def _add_shape(self, name: str, table: Values) -> int:
@@ -156,19 +160,22 @@ class _Lowering:
         if s.form == "cauchy":
             return b.spectrum_cauchy(s.A0, s.B[0], s.scale)
         if len(set(s.rgb)) > 1 and not self._has_rgb_table:
-            b.set_rgb_table(*rgb_table(self.cmf, self.d65))
+            b.set_rgb_table(*rgb_table(self.cmf))
             self._has_rgb_table = True
         add = b.spectrum_rgb_emission if s.role == "emission" else b.spectrum_rgb_reflectance
         return add(*s.rgb, s.scale)
 
 
 def colour_arrays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """CIE 1931 functions (471, 3) and D65 (471,), scaled to Y = 1, at 360, 361, ... 830 nm."""
+    """CIE 1931 functions (471, 3) and D65 (471,), scaled to Y = 1, at 360, 361, ... 830 nm.
+
+    Only correctly rounded operations in a fixed order: the bits are the same on every machine.
+    """
     observer = data.observer()
     cmf = np.ascontiguousarray(np.array([observer.x, observer.y, observer.z], dtype=np.float64).T)
-    points, values = data.illuminants()["D65"]
-    white = np.interp(np.arange(360.0, 831.0), points, values)
-    return cmf, white * (cmf[:, 1].sum() / np.dot(white, cmf[:, 1]))
+    white = [interpolate(*data.illuminants()["D65"], 360.0 + i, "zero") for i in range(471)]
+    scale = fsum(observer.y) / fsum(w * y for w, y in zip(white, observer.y, strict=True))
+    return cmf, np.array([w * scale for w in white])
 
 
 def _matrix(transform: NDArray[np.float64] | None) -> list[float] | None:

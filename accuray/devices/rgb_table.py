@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from accuray import data
 from accuray.film.files import atomic_write
 
-SHA256 = "1a61f8f993b86b5d92a9109c2729365bf4a7a96d8d6c5349a7c2aa5e3e3575e4"
+SHA256 = "c8bef704234195e9ce0f764f394217313f5250dd05ed966a1204864d3e430bde"
 """Of the coefficients' bytes: the same on every machine, because the builder uses no libm (`src/lower/rgb_table.h`)."""
 
 
@@ -23,9 +24,7 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "accuray"
 
 
-def rgb_table(
-    cmf: NDArray[np.float64], d65: NDArray[np.float64]
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def rgb_table(cmf: NDArray[np.float64]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Nodes of the largest component (n,) and sigmoid coefficients, flat, for ``SceneBuilder.set_rgb_table``.
 
     A cached file counts only if its checksum is right. A cache that cannot be written costs a second next time.
@@ -37,11 +36,17 @@ def rgb_table(
     path = cache_folder() / f"rgb-{n}-{SHA256[:16]}.f32"
     content = _read(path)
     if content is None:
-        table: NDArray[np.float32] = core.build_rgb_table(n, cmf, np.ascontiguousarray(d65[::5]), os.cpu_count() or 1)
+        table: NDArray[np.float32] = core.build_rgb_table(n, cmf, _d65(), os.cpu_count() or 1)
         content = table.tobytes()
         _check(content)
         _write(path, content)
     return nodes, np.frombuffer(content, dtype=np.float32)
+
+
+def _d65() -> NDArray[np.float64]:
+    """D65 as tabulated, 360, 365, ... 830 nm."""
+    points, values = data.illuminants()["D65"]
+    return np.array([v for w, v in zip(points, values, strict=True) if 360.0 <= w <= 830.0])
 
 
 def _read(path: Path) -> bytes | None:

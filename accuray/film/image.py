@@ -211,7 +211,7 @@ class Image:
             channels[f"error.{name}"] = np.ascontiguousarray(error[:, :, index])
         return channels
 
-    def _png(self, exposure: float | None = None, *, width: int | None = None, level: int = 4) -> bytes:
+    def _png(self, exposure: float | None = None, *, width: int | None = None) -> bytes:
         """The PNG file, at most `width` pixels wide; exposure in EV, by default the metadata's."""
         pixels = self.layers["rgb"]
         if transparent := bool(self.metadata.get("hide_environment")):
@@ -220,11 +220,11 @@ class Image:
             pixels = shrink(pixels, width)
         ev = float(self.metadata.get("exposure") or 0.0) if exposure is None else exposure
         alpha = pixels[:, :, 3] if transparent else None
-        return encode_png(pixels[:, :, :3], alpha, exposure=ev, level=level)
+        return encode_png(pixels[:, :, :3], alpha, exposure=ev)
 
     def _repr_png_(self) -> bytes:
         """The PNG that notebooks show, at most 960 pixels wide."""
-        return self._png(width=_NOTEBOOK_WIDTH, level=1)
+        return self._png(width=_NOTEBOOK_WIDTH)
 
     def __repr__(self) -> str:
         film = self.film

@@ -6,7 +6,6 @@ from typing import Any
 
 from accuray import devices
 from accuray.data.version import __version__
-from accuray.data.version import __version__
 from accuray.scene import Scene
 from accuray.scene import schema as schemas
 from accuray.scene.spectrum import xyz
@@ -34,4 +33,3 @@ def image_metadata(
     if reports:
         metadata["mesh_reports"] = reports
     return metadata
-

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +18,8 @@ SPACES = ("rgb", "xyz")
 WAVELENGTHS_AT_ONCE = 4
 
 
-class Radiance(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Radiance:
     """What ``radiance`` measures.
 
     Attributes:
@@ -142,7 +143,8 @@ def _trace(
     film.cover(0, spp)
     counts = film.counts()[0].astype(np.float64)[:, :, None]
     with np.errstate(invalid="ignore", divide="ignore"):
-        return film.sums[0] * film.step / counts
+        means: NDArray[np.float64] = film.sums[0] * film.step / counts
+    return means
 
 
 def _pooled(means: NDArray[np.float64], spp: int) -> Radiance:

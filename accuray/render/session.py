@@ -24,7 +24,8 @@ ERROR_INTERVAL = 0.5
 @dataclass(frozen=True)
 class Progress:
     """How far a render is. ``done`` and ``total`` in samples per pixel; times in seconds; ``error`` is the estimated
-    relative error of the picture, None until there is an estimate; ``eta`` is the time left, None at the start."""
+    relative error of the picture, None until there is an estimate; ``eta`` is the time left, None at the start.
+    """
 
     done: int
     total: int

@@ -20,6 +20,7 @@ void bind_schema(nb::module_& module);
 void bind_mesh(nb::module_& module);
 void bind_lower(nb::module_& module);
 void bind_engine(nb::module_& module);
+void bind_probe(nb::module_& module);
 
 template <class T, int64_t Columns>
 using Rows = nb::ndarray<const T, nb::shape<-1, Columns>, nb::c_contig, nb::device::cpu>;

@@ -1,18 +1,11 @@
 // Rendering: scenes on this machine, and passes over pixels or rays.
 #include "bindings/bindings.h"
+#include "bindings/loaded_scene.h"
 #include "engine/pass.h"
-#include "lower/block.h"
 
 namespace accuray::bindings {
 
 namespace {
-
-// A block together with what Embree built over it.
-struct LoadedScene {
-  explicit LoadedScene(const Block& lowered) : block(lowered), accel(block.view()) {}
-  Block block;
-  EmbreeScene accel;
-};
 
 using Sums = nb::ndarray<int64_t, nb::ndim<4>, nb::c_contig, nb::device::cpu>;
 using Dropped = nb::ndarray<uint32_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;

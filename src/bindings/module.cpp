@@ -7,4 +7,5 @@ NB_MODULE(_core, module) {
   accuray::bindings::bind_mesh(module);
   accuray::bindings::bind_lower(module);
   accuray::bindings::bind_engine(module);
+  accuray::bindings::bind_probe(module);
 }

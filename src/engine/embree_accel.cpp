@@ -12,8 +12,6 @@ namespace accuray {
 
 namespace {
 
-constexpr uint32_t kCompactTriangles = 20000;
-
 RTCBounds bounds_of(Vec3 center, float radius) {
   // A little more than the shape, so that rounding never cuts it.
   const float r = radius * (1.0f + gamma(8)) + gamma(8) * max_component(abs(center));
@@ -119,16 +117,7 @@ void EmbreeScene::attach(RTCScene target, uint32_t number, uint32_t id) {
 }
 
 void EmbreeScene::commit(RTCScene target) {
-  uint64_t triangles = 0;
-  for (uint32_t g = 0; g < view_.root->geometries.count; ++g) {
-    const GeometryRecord& record = view_.geometries[g];
-    if (record.shape.tag == tag_of<Mesh>(Shapes{})) triangles += view_.as<Mesh>(record.shape).indices.count / 3;
-  }
-  // Large scenes are kept compact: a third less memory for some per cent of speed.
-  int flags = RTC_SCENE_FLAG_ROBUST;
-  if (triangles > kCompactTriangles) flags |= RTC_SCENE_FLAG_COMPACT;
-  rtcSetSceneFlags(target, static_cast<RTCSceneFlags>(flags));
-  rtcSetSceneBuildQuality(target, RTC_BUILD_QUALITY_MEDIUM);
+  rtcSetSceneFlags(target, RTC_SCENE_FLAG_ROBUST);
   tbb::task_arena arena(1);
   arena.execute([&] { rtcCommitScene(target); });
   check("building the acceleration structure");

@@ -137,7 +137,7 @@ std::vector<float> LightTable::lambda_cdf(float scene_radius) const {
       for (int k = 0; k <= 8; ++k) emission = std::max(emission, spectra_.value({s}, 360.0 + i + 0.125 * k));
       double response = 0.0;
       for (int c = 0; c < 3; ++c) response += 0.5 * (cmf[3 * i + c] + cmf[3 * i + 3 + c]);
-      product[i] = emission * response;
+      product[i] = sqrt(emission * response);
       sum += product[i];
     }
     const double weight = 0.5 * share[s] + 0.5 / static_cast<double>(kinds);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "mesh/test_support.h"
 
@@ -96,12 +97,11 @@ TEST(Ply, BinaryInBothOrders) {
 }
 
 TEST(Ply, AsciiWithAllNames) {
-  for (const std::string names : {"u v", "s t", "texture_u texture_v", "texture_s texture_t"}) {
-    size_t blank = names.find(' ');
-    std::string header = kAscii + "element vertex 3\n" + kXyz +
-                         "property float nx\nproperty float ny\nproperty float nz\n" + "property float " +
-                         names.substr(0, blank) + "\nproperty float " + names.substr(blank + 1) +
-                         "\nelement face 1\nproperty list uint8 int32 vertex_index\nend_header\n";
+  for (const auto& [u, v] : {std::pair{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}) {
+    std::string header = kAscii;
+    header.append("element vertex 3\n").append(kXyz);
+    for (const char* name : {"nx", "ny", "nz", u, v}) header.append("property float ").append(name).append("\n");
+    header += "element face 1\nproperty list uint8 int32 vertex_index\nend_header\n";
     MeshData mesh = read_ply_bytes(header + "0 0 0 0 0 2 .1 .2\n\n1 0 0 0 0 1 .3 .4\r\n0\t1 0 0 0 1 .5 .6\n3 0 1 2");
     expect_valid(mesh);
     EXPECT_EQ(mesh.uvs, (Floats{.1f, .2f, .3f, .4f, .5f, .6f}));
@@ -195,11 +195,11 @@ TEST(Ply, AsciiDataErrors) {
 
 // Declared sizes are never trusted: nothing is allocated for rows that cannot be there.
 TEST(Ply, LyingSizes) {
-  for (const std::string count : {"4294967294", "1000000000"}) {
-    std::string header =
-        "ply\nformat binary_little_endian 1.0\nelement vertex " + count + "\n" + kXyz + "element face 0\n" + kFace;
-    expect_ply_error(header + "abc",
-                     ":3: element vertex with " + count + " rows is larger than the file: allowed 0 rows");
+  for (const char* count : {"4294967294", "1000000000"}) {
+    std::string file = "ply\nformat binary_little_endian 1.0\nelement vertex ";
+    file.append(count).append("\n").append(kXyz).append("element face 0\n").append(kFace).append("abc");
+    std::string message = ":3: element vertex with ";
+    expect_ply_error(file, message.append(count).append(" rows is larger than the file: allowed 0 rows"));
   }
   std::string header = kAscii + "element vertex 4294967296\n" + kXyz + "element face 0\n" + kFace;
   expect_ply_error(header, ":3: number of vertices 4294967296 is too large: allowed 4294967294");

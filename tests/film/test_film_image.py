@@ -129,6 +129,21 @@ def test_png_survives_any_value() -> None:
     assert decode(encode_png(rgb, np.float32([[np.nan, 2.0]]))).tolist()[0][1] == [0, 255, 188, 255]
 
 
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (7, 1), (40, 31), (300, 1000)])
+@pytest.mark.parametrize("transparent", [False, True])
+def test_png_pixels_survive_every_filter(shape: tuple[int, int], transparent: bool) -> None:
+    """Noise, ramps along both axes and flat parts: each filter of PNG is the best one for some row."""
+    generator = np.random.default_rng(7)
+    y, x = np.indices(shape)
+    ramps = np.stack([x / max(shape[1], 1), y / max(shape[0], 1), (x + y) / sum(shape)], axis=2)
+    noisy = np.where((y % 4 == 0)[:, :, None], generator.random((*shape, 3)), ramps).astype(np.float32)
+    alpha = np.where(y % 3 == 0, np.float32(1.0), np.float32(0.5)) if transparent else None
+    pixels = decode(encode_png(noisy, alpha))
+    assert pixels.shape == (*shape, 4 if transparent else 3)
+    straight = noisy if alpha is None else noisy / alpha[:, :, None]
+    assert np.array_equal(pixels[:, :, :3], srgb8(straight))
+
+
 def test_png_bytes_are_repeatable(image: Image, tmp_path: Path) -> None:
     for name in ("a.png", "b.png"):
         Image(image.film, image.metadata).save(tmp_path / name)

@@ -40,10 +40,11 @@ class Build:
 
 
 def library() -> ctypes.CDLL:
-    """libnvrtc of the package nvidia-cuda-nvrtc."""
+    """The library of the package nvidia-cuda-nvrtc."""
     spec = importlib.util.find_spec("nvidia")
-    assert spec is not None and spec.submodule_search_locations, "the test group's nvidia-cuda-nvrtc is not installed"
-    for folder in spec.submodule_search_locations:
+    folders = spec.submodule_search_locations if spec is not None else None
+    assert folders, "the test group's nvidia-cuda-nvrtc is not installed"
+    for folder in folders:
         for path in sorted(Path(folder).rglob("libnvrtc.so*")):
             return ctypes.CDLL(str(path))
     raise AssertionError("nvidia-cuda-nvrtc has no libnvrtc.so")

@@ -19,13 +19,16 @@ def build() -> Build:
 
 def test_builds_without_recursion_or_unresolved_calls(build: Build) -> None:
     assert build.cubin.startswith(b"\x7fELF")
-    assert "unresolved" not in build.log and "extern" not in build.log, build.log
+    assert "unresolved" not in build.log, build.log
+    assert "extern" not in build.log, build.log
     assert build.stack >= 0, f"the stack cannot be bounded, so something recurses:\n{build.log}"
 
 
 def test_local_stack_is_small(build: Build, capsys: pytest.CaptureFixture[str]) -> None:
     with capsys.disabled():
-        print(f"\nNVRTC sm_90: {build.registers} registers, {build.stack} B of stack, ptxas {build.compile_seconds:.1f} s")
+        print(
+            f"\nNVRTC sm_90: {build.registers} registers, {build.stack} B of stack, ptxas {build.compile_seconds:.1f} s"
+        )
     assert build.stack <= LARGEST_STACK
 
 
@@ -54,4 +57,6 @@ def test_a_large_frame_is_noticed() -> None:
 
 def test_an_unresolved_call_is_refused() -> None:
     with pytest.raises(AssertionError, match="missing"):
-        compile_kernel('extern "C" __device__ int missing(int);\nextern "C" __global__ void k(int* p) { *p = missing(1); }')
+        compile_kernel(
+            'extern "C" __device__ int missing(int);\nextern "C" __global__ void k(int* p) { *p = missing(1); }'
+        )

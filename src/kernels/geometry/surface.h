@@ -1,8 +1,7 @@
-// From a hit to a point on a surface: position with its error bound, normals, texture coordinates.
+// From a hit to a point on a surface: position with its error bound, and normals.
 #pragma once
 
 #include "kernels/geometry/shapes.h"
-#include "kernels/math/functions.h"
 #include "kernels/math/rounding.h"
 
 namespace accuray {
@@ -17,7 +16,6 @@ struct Surface {
   Vec3 error;
   Vec3 normal;
   Vec3 shading;
-  Vec2 uv;
   uint32_t material;
   uint32_t light;       // the light that this point belongs to; none: not emissive
 };
@@ -59,7 +57,6 @@ inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& h
   s.error = triangle_error(tri);
   s.normal = normalize(cross(tri.p1 - tri.p0, tri.p2 - tri.p0));
   s.shading = s.normal;
-  s.uv = {hit.u, hit.v};
   if (mesh.normals.count != 0) {
     const float* normals = scene.at(mesh.normals);
     const Vec3 n = fma(w, load_vec3(normals, tri.i0),
@@ -70,11 +67,6 @@ inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& h
       if (dot(s.shading, s.normal) < 0.0f) s.shading = -s.shading;
     }
   }
-  if (mesh.uvs.count != 0) {
-    const float* t = scene.at(mesh.uvs);
-    s.uv = {fma(w, t[2 * tri.i0], fma(hit.u, t[2 * tri.i1], hit.v * t[2 * tri.i2])),
-            fma(w, t[2 * tri.i0 + 1], fma(hit.u, t[2 * tri.i1 + 1], hit.v * t[2 * tri.i2 + 1]))};
-  }
 }
 
 // The point is moved onto the sphere, whose error no longer grows with the ray's length (Pharr et al. 2023, 6.8.5).
@@ -84,7 +76,6 @@ inline void place_on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit
   s.point = fma(sphere.radius, s.normal, sphere.center);
   const float size = gamma(8) * sphere.radius;
   s.error = fma(gamma(4), abs(sphere.center), Vec3{size, size, size});
-  s.uv = {fma(atan2(s.normal.z, s.normal.x), 0.5f * inv_pi, 0.5f), acos(clamp(s.normal.y, -1.0f, 1.0f)) * inv_pi};
 }
 
 inline void place_on_disk(const Disk& disk, const Ray& ray, const Hit& hit, Surface& s) {
@@ -94,9 +85,6 @@ inline void place_on_disk(const Disk& disk, const Ray& ray, const Hit& hit, Surf
   s.point = fma(-dot(p - disk.center, disk.normal), disk.normal, p);
   const float size = gamma(6) * disk.radius;
   s.error = fma(gamma(10), abs(disk.center), Vec3{size, size, size});
-  const Frame frame = Frame::around(disk.normal);
-  const Vec3 local = frame.to_local(s.point - disk.center);
-  s.uv = {fma(local.x / disk.radius, 0.5f, 0.5f), fma(local.y / disk.radius, 0.5f, 0.5f)};
 }
 
 inline void place_on_shape(const SceneView& scene, const GeometryRecord& geometry, const Ray& ray, const Hit& hit,

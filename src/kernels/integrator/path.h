@@ -59,8 +59,8 @@ struct PathTracing {
 
     // The sample's numbers for this vertex; the second set is drawn where something needs it.
     const f32x4 u_direction = path.sampler.draw(direction_set(path));
-    const Vec2 u_light = {u_direction[0], u_direction[1]};
-    const Vec2 u_bsdf = {u_direction[2], u_direction[3]};
+    const Vec2 u_light = {u_direction[2], u_direction[3]};
+    const Vec2 u_bsdf = {u_direction[0], u_direction[1]};
     const MaterialRecord& material = scene.materials[surface.material];
     const f32x4 u_decision = needs_decisions(scene, material, path) ? path.sampler.draw(decision_set(path)) : lanes(0.0f);
     const float u_choice = u_decision[0];

@@ -1,0 +1,244 @@
+// The kernels' parts one by one, over arrays: what the tests of the lists call, and anyone who studies a BSDF.
+#include <nanobind/stl/array.h>
+
+#include "bindings/bindings.h"
+#include "bindings/loaded_scene.h"
+#include "kernels/accel/exhaustive.h"
+#include "kernels/integrator/sample.h"
+
+namespace accuray::bindings {
+
+namespace {
+
+using Vectors = Rows<float, 3>;
+
+Vec3 row(const Vectors& array, size_t i) { return {array.data()[3 * i], array.data()[3 * i + 1], array.data()[3 * i + 2]}; }
+void put(std::vector<float>& target, Vec3 v) { target.insert(target.end(), {v.x, v.y, v.z}); }
+void put(std::vector<float>& target, Spectrum s) { target.insert(target.end(), {s[0], s[1], s[2], s[3]}); }
+
+Wavelengths carried(const std::vector<float>& wavelengths) {
+  if (wavelengths.size() != 4) throw std::invalid_argument("a path carries four wavelengths");
+  return Wavelengths::at(lanes(wavelengths[0], wavelengths[1], wavelengths[2], wavelengths[3]), lanes(1.0f));
+}
+
+// Calls fn with the values of the material's BSDF at the wavelengths.
+template <class Fn>
+void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, Fn&& fn) {
+  const SceneView& view = scene.accel.view();
+  if (material >= view.root->materials.count) throw std::invalid_argument("there is no such material");
+  const Tagged bsdf = view.materials[material].bsdf;
+  dispatch(Bsdfs{}, bsdf.tag, [&](auto type) {
+    fn(view.as<typename decltype(type)::type>(bsdf).at(view, carried(wavelengths)));
+    return true;
+  });
+}
+
+void require_rows(size_t a, size_t b) {
+  if (a != b) throw std::invalid_argument("the arrays must have as many rows as each other");
+}
+
+nb::dict bsdf_sample(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, const Vectors& wo,
+                     const Vectors& u) {
+  require_rows(wo.shape(0), u.shape(0));
+  std::vector<float> wi, weight, pdf, eta_scale;
+  std::vector<uint32_t> lobe;
+  with_bsdf(scene, material, wavelengths, [&](const auto& bsdf) {
+    for (size_t i = 0; i < wo.shape(0); ++i) {
+      const Vec3 numbers = row(u, i);
+      const BsdfSample s = bsdf.sample(row(wo, i), numbers.z, {numbers.x, numbers.y});
+      put(wi, s.wi);
+      put(weight, s.weight);
+      pdf.push_back(s.pdf);
+      eta_scale.push_back(s.eta_scale);
+      lobe.push_back(s.lobe);
+    }
+  });
+  nb::dict result;
+  result["wi"] = to_numpy(std::move(wi), 3);
+  result["weight"] = to_numpy(std::move(weight), 4);
+  result["pdf"] = to_numpy(std::move(pdf), 0);
+  result["eta_scale"] = to_numpy(std::move(eta_scale), 0);
+  result["lobe"] = to_numpy(std::move(lobe), 0);
+  return result;
+}
+
+nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, const Vectors& wo,
+                    const Vectors& wi) {
+  require_rows(wo.shape(0), wi.shape(0));
+  std::vector<float> value, pdf;
+  with_bsdf(scene, material, wavelengths, [&](const auto& bsdf) {
+    for (size_t i = 0; i < wo.shape(0); ++i) {
+      put(value, bsdf.eval(row(wo, i), row(wi, i)));
+      pdf.push_back(bsdf.pdf(row(wo, i), row(wi, i)));
+    }
+  });
+  return nb::make_tuple(to_numpy(std::move(value), 4), to_numpy(std::move(pdf), 0));
+}
+
+nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Rows<float, 2>& u) {
+  const SceneView& view = scene.accel.view();
+  if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
+  std::vector<float> wi, point, distance, pdf, scale;
+  for (size_t i = 0; i < u.shape(0); ++i) {
+    const LightSample s =
+        sample_light(view, light, {reference[0], reference[1], reference[2]}, {u.data()[2 * i], u.data()[2 * i + 1]});
+    put(wi, s.wi);
+    put(point, s.point);
+    distance.push_back(s.distance);
+    pdf.push_back(s.pdf);
+    scale.push_back(s.scale);
+  }
+  nb::dict result;
+  result["wi"] = to_numpy(std::move(wi), 3);
+  result["point"] = to_numpy(std::move(point), 3);
+  result["distance"] = to_numpy(std::move(distance), 0);
+  result["pdf"] = to_numpy(std::move(pdf), 0);
+  result["scale"] = to_numpy(std::move(scale), 0);
+  return result;
+}
+
+// Density with which light_sample() chooses each direction; 0 where the ray does not meet the light.
+nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Vectors& wi) {
+  const SceneView& view = scene.accel.view();
+  if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
+  const EmbreeAccel accel(scene.accel);
+  const Vec3 from = {reference[0], reference[1], reference[2]};
+  std::vector<float> pdf;
+  for (size_t i = 0; i < wi.shape(0); ++i) {
+    const Ray ray{from, row(wi, i)};
+    const Hit hit = accel.closest(ray);
+    if (hit.geometry == none) {
+      pdf.push_back(view.root->environment == light ? light_pdf(view, light, from, ray.direction, Surface{}) : 0.0f);
+      continue;
+    }
+    const Surface surface = surface_at(view, ray, hit);
+    pdf.push_back(surface.light == light ? light_pdf(view, light, from, ray.direction, surface) : 0.0f);
+  }
+  return to_numpy(std::move(pdf), 0);
+}
+
+nb::list light_names(const LoadedScene& scene) {
+  constexpr const char* names[] = {"point", "constant", "triangle", "quad", "sphere", "disk"};
+  static_assert(Lights::size == std::size(names));
+  nb::list result;
+  const SceneView& view = scene.accel.view();
+  for (uint32_t i = 0; i < view.root->lights.count; ++i) result.append(names[view.lights[i].light.tag]);
+  return result;
+}
+
+nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors& directions, bool exhaustive) {
+  require_rows(origins.shape(0), directions.shape(0));
+  const SceneView& view = scene.accel.view();
+  const EmbreeAccel embree(scene.accel);
+  const Exhaustive every{&view};
+  std::vector<float> t, point, error, normal, shading;
+  std::vector<uint32_t> geometry, primitive, instance;
+  for (size_t i = 0; i < origins.shape(0); ++i) {
+    const Ray ray{row(origins, i), row(directions, i)};
+    const Hit hit = exhaustive ? every.closest(ray) : embree.closest(ray);
+    const Surface s = hit.geometry == none ? Surface{} : surface_at(view, ray, hit);
+    t.push_back(hit.geometry == none ? infinity : hit.t);
+    geometry.push_back(hit.geometry);
+    primitive.push_back(hit.primitive);
+    instance.push_back(hit.instance);
+    put(point, s.point);
+    put(error, s.error);
+    put(normal, s.normal);
+    put(shading, s.shading);
+  }
+  nb::dict result;
+  result["t"] = to_numpy(std::move(t), 0);
+  result["geometry"] = to_numpy(std::move(geometry), 0);
+  result["primitive"] = to_numpy(std::move(primitive), 0);
+  result["instance"] = to_numpy(std::move(instance), 0);
+  result["point"] = to_numpy(std::move(point), 3);
+  result["error"] = to_numpy(std::move(error), 3);
+  result["normal"] = to_numpy(std::move(normal), 3);
+  result["shading"] = to_numpy(std::move(shading), 3);
+  return result;
+}
+
+// From surface points (as closest() gives them), whether a ray off them to each direction leaves the scene.
+nb::object escapes(const LoadedScene& scene, const Vectors& points, const Vectors& errors, const Vectors& normals,
+                   const Vectors& directions) {
+  require_rows(points.shape(0), directions.shape(0));
+  const EmbreeAccel accel(scene.accel);
+  std::vector<uint8_t> result;
+  for (size_t i = 0; i < points.shape(0); ++i) {
+    const Vec3 d = row(directions, i);
+    const Vec3 from = offset_origin(row(points, i), row(errors, i), row(normals, i), d);
+    result.push_back(accel.transmittance({from, d}) > 0.0f ? 1 : 0);
+  }
+  return to_numpy(std::move(result), 0);
+}
+
+// Offsets from the pixel's centre for numbers u, on one axis.
+nb::object filter_sample(const LoadedScene& scene, const Column<float>& u) {
+  const SceneView& view = scene.accel.view();
+  std::vector<float> offsets;
+  dispatch(Filters{}, view.root->filter.tag, [&](auto type) {
+    const auto& filter = view.as<typename decltype(type)::type>(view.root->filter);
+    for (size_t i = 0; i < u.size(); ++i) offsets.push_back(filter.sample(u.data()[i]));
+    return true;
+  });
+  return to_numpy(std::move(offsets), 0);
+}
+
+// Points of the sampler: set `set` of samples first ... first + count - 1 under a key.
+nb::object sampler_points(uint32_t key, uint32_t set, uint32_t first, uint32_t count) {
+  std::vector<float> points;
+  for (uint32_t i = first; i < first + count; ++i) put(points, Sampler::at(key, i).draw(set));
+  return to_numpy(std::move(points), 4);
+}
+
+// Sums over samples 0 ... count-1 of constant channel values, rounded as the film rounds them: (4,) sums of steps.
+nb::object quantized_sums(const std::vector<float>& value, double step, uint32_t key, uint64_t count) {
+  if (value.size() != 4) throw std::invalid_argument("a sample has four channels");
+  std::vector<int64_t> sums(film_channels, 0);
+  const f32x4 channels = lanes(value[0], value[1], value[2], value[3]);
+  for (uint64_t i = 0; i < count; ++i) {
+    const Quantized q = quantize(channels, static_cast<float>(1.0 / step), dither_key(key, static_cast<uint32_t>(i)));
+    if (!q.finite) throw std::invalid_argument("the value does not fit");
+    for (uint32_t c = 0; c < film_channels; ++c) {
+      if (!add_checked(sums[c], q.value[c])) throw std::overflow_error("the sum leaves 64 bits");
+    }
+  }
+  return to_numpy(std::move(sums), 0);
+}
+
+nb::object functions(const std::string& name, const Column<double>& x) {
+  std::vector<double> y;
+  const auto map = [&](auto f) {
+    for (size_t i = 0; i < x.size(); ++i) y.push_back(static_cast<double>(f(x.data()[i])));
+  };
+  if (name == "sin") map([](double v) { return sincos(static_cast<float>(v)).sin; });
+  else if (name == "cos") map([](double v) { return sincos(static_cast<float>(v)).cos; });
+  else if (name == "atan") map([](double v) { return accuray::atan(static_cast<float>(v)); });
+  else if (name == "asin") map([](double v) { return accuray::asin(static_cast<float>(v)); });
+  else if (name == "acos") map([](double v) { return accuray::acos(static_cast<float>(v)); });
+  else if (name == "exp") map([](double v) { return accuray::exp(v); });
+  else if (name == "log") map([](double v) { return accuray::log(v); });
+  else if (name == "sin64") map([](double v) { return sincos(v).sin; });
+  else if (name == "cos64") map([](double v) { return sincos(v).cos; });
+  else throw std::invalid_argument("there is no function called '" + name + "'");
+  return to_numpy(std::move(y), 0);
+}
+
+}  // namespace
+
+void bind_probe(nb::module_& module) {
+  nb::module_ probe = module.def_submodule("probe", "Parts of the kernels over arrays, for tests and study.");
+  probe.def("bsdf_sample", &bsdf_sample, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "u"_a);
+  probe.def("bsdf_eval", &bsdf_eval, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "wi"_a);
+  probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);
+  probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);
+  probe.def("light_names", &light_names, "scene"_a);
+  probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false);
+  probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a);
+  probe.def("filter_sample", &filter_sample, "scene"_a, "u"_a);
+  probe.def("sampler_points", &sampler_points, "key"_a, "set"_a, "first"_a, "count"_a);
+  probe.def("quantized_sums", &quantized_sums, "value"_a, "step"_a, "key"_a, "count"_a);
+  probe.def("function", &functions, "name"_a, "x"_a, "An elementary function of kernels/math at each x.");
+}
+
+}  // namespace accuray::bindings

@@ -1,0 +1,97 @@
+"""Shipped scenes in a form in which the naive `reference` integrator can be compared with the others.
+
+`reference` finds light only where its paths run into it, so a small lamp leaves it nothing but noise. Each scene is
+changed for all integrators alike: few pixels, the box filter, and what `FAIR` says for it. A scene that is not in the
+table is taken as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import accuray
+
+FOLDER = Path(__file__).resolve().parents[2] / "scenes"
+SIZE = 32
+Table = dict[str, Any]
+
+
+def as_it_is(scene: accuray.Scene) -> accuray.Scene:
+    """No change."""
+    return scene
+
+
+def enlarged(scene: accuray.Scene, lamp: str, factor: float) -> accuray.Scene:
+    """The lamp (a mesh or a rectangle) `factor` times as wide and long about its centre, with the same flux.
+
+    Vertices of other meshes that lie on a corner of the lamp move with it, so a hole around it stays closed.
+    """
+    shapes = {name: dict(table) for name, table in scene.shapes.items()}
+    before = corners(shapes[lamp])
+    centre = before.mean(axis=0)
+    after = centre + factor * (before - centre)
+    for table in shapes.values():
+        if table["type"] == "mesh":
+            table["positions"] = moved(table["positions"], before, after)
+    if shapes[lamp]["type"] == "rectangle":
+        shapes[lamp]["corner"] = tuple(after[0])
+        for edge in ("edge_u", "edge_v"):
+            shapes[lamp][edge] = tuple(factor * np.array(shapes[lamp][edge]))
+    material = dict(scene.materials[shapes[lamp]["material"]])
+    material["emission"] = replace(material["emission"], scale=material["emission"].scale / factor**2)
+    return replace(scene, shapes=shapes, materials=scene.materials | {shapes[lamp]["material"]: material})
+
+
+def corners(table: Table) -> NDArray[np.float64]:
+    """Vertices of a mesh or rectangle, (N, 3); a rectangle's first is its `corner`."""
+    if table["type"] == "mesh":
+        return np.asarray(table["positions"], dtype=np.float64)
+    start, u, v = (np.array(table[key], dtype=np.float64) for key in ("corner", "edge_u", "edge_v"))
+    return np.stack([start, start + u, start + u + v, start + v])
+
+
+def moved(
+    positions: NDArray[np.float32], before: NDArray[np.float64], after: NDArray[np.float64]
+) -> NDArray[np.float32]:
+    """Positions (N, 3), those of `before` put where `after` says."""
+    result = positions.copy()
+    for old, new in zip(before, after, strict=True):
+        result[np.abs(positions - old).max(axis=1) < 1e-6] = new
+    return result
+
+
+@dataclass(frozen=True)
+class Fair:
+    """How a scene is made fair, in words and in code."""
+
+    how: str
+    change: Callable[[accuray.Scene], accuray.Scene] = as_it_is
+
+
+UNKNOWN = Fair("as it is")
+FAIR = {
+    "closed-box": Fair("as it is: it glows everywhere"),
+    "cornell-box": Fair("the lamp 4 times as wide and long, 1/16 as bright", partial(enlarged, lamp="lamp", factor=4)),
+    "furnace": Fair("as it is: its light comes from everywhere"),
+    "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
+    "sphere-cavity": Fair("as it is: `reference` sums its point light plainly"),
+    "spheres": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),
+}
+
+
+def shipped() -> list[str]:
+    """Names of all shipped scenes."""
+    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+
+
+def fair_scene(name: str, integrator: Table) -> accuray.Scene:
+    """The shipped scene in its fair form, with an integrator in place of its own."""
+    small = {"film.width": SIZE, "film.height": SIZE, "film.filter": {"type": "box"}, "integrator": integrator}
+    return FAIR.get(name, UNKNOWN).change(accuray.load(FOLDER / f"{name}.toml", overrides=small))
