@@ -33,8 +33,6 @@ class Parser(argparse.ArgumentParser):
     def parse(self, arguments: Sequence[str]) -> argparse.Namespace:
         """Parses the arguments after the verb; flags and other arguments may be mixed."""
         self._refuse_unknown_flags(arguments)
-        if not {"-h", "--help"} & set(arguments):
-            self.usage = self.prog  # argparse would compose the long one, for errors that do not show it
         return self.parse_intermixed_args(arguments)
 
     def error(self, message: str) -> NoReturn:

@@ -10,7 +10,8 @@ namespace {
 using Sums = nb::ndarray<int64_t, nb::ndim<4>, nb::c_contig, nb::device::cpu>;
 using Dropped = nb::ndarray<uint32_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
-Request to_request(uint32_t seed, uint32_t replicates, uint32_t width, uint32_t height, const std::vector<float>& wavelengths) {
+Request to_request(uint32_t seed, uint32_t replicates, uint32_t width, uint32_t height,
+                   const std::vector<float>& wavelengths) {
   if (replicates < 1 || replicates > 16) throw std::invalid_argument("replicates must be 1 to 16");
   Request request{};
   request.seed = seed;
@@ -20,7 +21,8 @@ Request to_request(uint32_t seed, uint32_t replicates, uint32_t width, uint32_t 
   if (!wavelengths.empty()) {
     if (wavelengths.size() > 4) throw std::invalid_argument("at most four wavelengths at a time");
     request.observer.fixed = 1;
-    for (size_t k = 0; k < 4; ++k) request.observer.lambda[static_cast<int>(k)] = wavelengths[std::min(k, wavelengths.size() - 1)];
+    for (size_t k = 0; k < 4; ++k)
+      request.observer.lambda[static_cast<int>(k)] = wavelengths[std::min(k, wavelengths.size() - 1)];
   }
   return request;
 }
@@ -30,7 +32,8 @@ FilmView to_film(const Sums& sums, const Dropped& dropped, uint32_t x0, uint32_t
       dropped.shape(1) != sums.shape(1) || dropped.shape(2) != replicates) {
     throw std::invalid_argument("sums must be (H, W, replicates, 4) and dropped (H, W, replicates)");
   }
-  return {sums.data(), dropped.data(), x0, y0, static_cast<uint32_t>(sums.shape(1)), static_cast<uint32_t>(sums.shape(0))};
+  return {
+      sums.data(), dropped.data(), x0, y0, static_cast<uint32_t>(sums.shape(1)), static_cast<uint32_t>(sums.shape(0))};
 }
 
 // A running pass; keeps everything that its threads read and write alive.
@@ -39,7 +42,7 @@ struct Pass {
   Sums sums;
   Dropped dropped;
   std::vector<float> origins, directions;
-  std::vector<uint8_t> finished;   // per task, in the order of the tasks' numbers
+  std::vector<uint8_t> finished;  // per task, in the order of the tasks' numbers
   std::unique_ptr<Pool> pool;
 
   bool wait(double seconds) {
@@ -54,9 +57,10 @@ struct Pass {
   }
 };
 
-std::unique_ptr<Pass> render_pass(std::shared_ptr<LoadedScene> scene, Sums sums, Dropped dropped, uint32_t x0, uint32_t y0,
-                                  uint32_t width, uint32_t height, const std::vector<uint32_t>& tiles, uint64_t first,
-                                  uint32_t count, uint32_t seed, uint32_t replicates, uint32_t threads) {
+std::unique_ptr<Pass> render_pass(std::shared_ptr<LoadedScene> scene, Sums sums, Dropped dropped, uint32_t x0,
+                                  uint32_t y0, uint32_t width, uint32_t height, const std::vector<uint32_t>& tiles,
+                                  uint64_t first, uint32_t count, uint32_t seed, uint32_t replicates,
+                                  uint32_t threads) {
   if (first + count > 0xffffffffull) throw std::invalid_argument("sample numbers must stay below 2^32");
   auto pass = std::make_unique<Pass>();
   const FilmView film = to_film(sums, dropped, x0, y0, replicates);
@@ -71,7 +75,8 @@ std::unique_ptr<Pass> render_pass(std::shared_ptr<LoadedScene> scene, Sums sums,
   pass->finished.assign(tiles.size(), 0);
   pass->pool = nullptr;
   Pass* p = pass.get();
-  auto task = [p, film, request, tiles, first, count](uint32_t i, const EmbreeAccel& accel, const std::atomic<bool>& stop) {
+  auto task = [p, film, request, tiles, first, count](uint32_t i, const EmbreeAccel& accel,
+                                                      const std::atomic<bool>& stop) {
     const SceneView& view = p->scene->accel.view();
     const bool done = render_tile(view, accel, request, film, tiles[i], static_cast<uint32_t>(first), count, stop);
     p->finished[i] = done ? 1 : 0;
@@ -83,17 +88,20 @@ std::unique_ptr<Pass> render_pass(std::shared_ptr<LoadedScene> scene, Sums sums,
 
 constexpr uint32_t kRaysPerTask = 256;
 
-std::unique_ptr<Pass> ray_pass(std::shared_ptr<LoadedScene> scene, Sums sums, Dropped dropped, const Rows<float, 3>& origins,
-                               const Rows<float, 3>& directions, uint64_t first, uint32_t count, uint32_t seed,
-                               uint32_t replicates, uint32_t threads, const std::vector<float>& wavelengths) {
-  if (origins.shape(0) != directions.shape(0)) throw std::invalid_argument("there must be as many directions as origins");
+std::unique_ptr<Pass> ray_pass(std::shared_ptr<LoadedScene> scene, Sums sums, Dropped dropped,
+                               const Rows<float, 3>& origins, const Rows<float, 3>& directions, uint64_t first,
+                               uint32_t count, uint32_t seed, uint32_t replicates, uint32_t threads,
+                               const std::vector<float>& wavelengths) {
+  if (origins.shape(0) != directions.shape(0))
+    throw std::invalid_argument("there must be as many directions as origins");
   if (origins.shape(0) >= 0xffffffffull) throw std::invalid_argument("there are too many rays");
   if (first + count > 0xffffffffull) throw std::invalid_argument("sample numbers must stay below 2^32");
   auto pass = std::make_unique<Pass>();
   const FilmView film = to_film(sums, dropped, 0, 0, replicates);
   const Request request = to_request(seed, replicates, 1, 1, wavelengths);
   const auto rays = static_cast<uint32_t>(origins.shape(0));
-  if (film.width != rays || film.height != 1) throw std::invalid_argument("sums must have one row and a column for each ray");
+  if (film.width != rays || film.height != 1)
+    throw std::invalid_argument("sums must have one row and a column for each ray");
   pass->scene = std::move(scene);
   pass->sums = std::move(sums);
   pass->dropped = std::move(dropped);
@@ -102,9 +110,11 @@ std::unique_ptr<Pass> ray_pass(std::shared_ptr<LoadedScene> scene, Sums sums, Dr
   const uint32_t tasks = (rays + kRaysPerTask - 1) / kRaysPerTask;
   pass->finished.assign(tasks, 0);
   Pass* p = pass.get();
-  auto task = [p, film, request, rays, first, count](uint32_t i, const EmbreeAccel& accel, const std::atomic<bool>& stop) {
-    const bool done = trace_rays(p->scene->accel.view(), accel, request, p->origins.data(), p->directions.data(), film,
-                                 i * kRaysPerTask, std::min((i + 1) * kRaysPerTask, rays), static_cast<uint32_t>(first), count, stop);
+  auto task = [p, film, request, rays, first, count](uint32_t i, const EmbreeAccel& accel,
+                                                     const std::atomic<bool>& stop) {
+    const bool done =
+        trace_rays(p->scene->accel.view(), accel, request, p->origins.data(), p->directions.data(), film,
+                   i * kRaysPerTask, std::min((i + 1) * kRaysPerTask, rays), static_cast<uint32_t>(first), count, stop);
     p->finished[i] = done ? 1 : 0;
     return done;
   };
@@ -122,21 +132,26 @@ void bind_engine(nb::module_& module) {
   nb::exception<FilmOverflow>(engine, "FilmOverflow", PyExc_OverflowError);
   nb::exception<EmbreeError>(engine, "EmbreeError", PyExc_RuntimeError);
   nb::class_<LoadedScene>(engine, "LoadedScene")
-      .def("__init__", [](LoadedScene* self, const Block& block) {
-        const nb::gil_scoped_release release;
-        new (self) LoadedScene(block);
-      }, "block"_a)
+      .def(
+          "__init__",
+          [](LoadedScene* self, const Block& block) {
+            const nb::gil_scoped_release release;
+            new (self) LoadedScene(block);
+          },
+          "block"_a)
       .def_prop_ro("accel_bytes", [](const LoadedScene& scene) { return scene.accel.bytes(); })
       .def_prop_ro("lights", [](const LoadedScene& scene) { return scene.accel.view().root->lights.count; });
   nb::class_<Pass>(engine, "Pass")
       .def("wait", &Pass::wait, "seconds"_a, "True once the pass has ended; waits at most so long.")
       .def("stop", [](Pass& pass) { pass.pool->stop(); })
-      .def_prop_ro("done", [](const Pass& pass) { return pass.pool->done(); }, "Tasks that are finished.")
+      .def_prop_ro(
+          "done", [](const Pass& pass) { return pass.pool->done(); }, "Tasks that are finished.")
       .def_prop_ro("rays", [](const Pass& pass) { return pass.pool->rays(); })
-      .def_prop_ro("finished", [](const Pass& pass) { return to_numpy(std::vector<uint8_t>(pass.finished), 0); },
-                   "1 for each task that is finished; valid after the end.");
-  engine.def("render_pass", &render_pass, "scene"_a, "sums"_a, "dropped"_a, "x0"_a, "y0"_a, "width"_a, "height"_a, "tiles"_a,
-             "first"_a, "count"_a, "seed"_a, "replicates"_a, "threads"_a);
+      .def_prop_ro(
+          "finished", [](const Pass& pass) { return to_numpy(std::vector<uint8_t>(pass.finished), 0); },
+          "1 for each task that is finished; valid after the end.");
+  engine.def("render_pass", &render_pass, "scene"_a, "sums"_a, "dropped"_a, "x0"_a, "y0"_a, "width"_a, "height"_a,
+             "tiles"_a, "first"_a, "count"_a, "seed"_a, "replicates"_a, "threads"_a);
   engine.def("ray_pass", &ray_pass, "scene"_a, "sums"_a, "dropped"_a, "origins"_a, "directions"_a, "first"_a, "count"_a,
              "seed"_a, "replicates"_a, "threads"_a, "wavelengths"_a);
 }

@@ -12,7 +12,9 @@ namespace {
 
 using Vectors = Rows<float, 3>;
 
-Vec3 row(const Vectors& array, size_t i) { return {array.data()[3 * i], array.data()[3 * i + 1], array.data()[3 * i + 2]}; }
+Vec3 row(const Vectors& array, size_t i) {
+  return {array.data()[3 * i], array.data()[3 * i + 1], array.data()[3 * i + 2]};
+}
 void put(std::vector<float>& target, Vec3 v) { target.insert(target.end(), {v.x, v.y, v.z}); }
 void put(std::vector<float>& target, Spectrum s) { target.insert(target.end(), {s[0], s[1], s[2], s[3]}); }
 
@@ -37,8 +39,8 @@ void require_rows(size_t a, size_t b) {
   if (a != b) throw std::invalid_argument("the arrays must have as many rows as each other");
 }
 
-nb::dict bsdf_sample(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, const Vectors& wo,
-                     const Vectors& u) {
+nb::dict bsdf_sample(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths,
+                     const Vectors& wo, const Vectors& u) {
   require_rows(wo.shape(0), u.shape(0));
   std::vector<float> wi, weight, pdf, eta_scale;
   std::vector<uint32_t> lobe;
@@ -62,8 +64,8 @@ nb::dict bsdf_sample(const LoadedScene& scene, uint32_t material, const std::vec
   return result;
 }
 
-nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, const Vectors& wo,
-                    const Vectors& wi) {
+nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths,
+                    const Vectors& wo, const Vectors& wi) {
   require_rows(wo.shape(0), wi.shape(0));
   std::vector<float> value, pdf;
   with_bsdf(scene, material, wavelengths, [&](const auto& bsdf) {
@@ -75,7 +77,8 @@ nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vect
   return nb::make_tuple(to_numpy(std::move(value), 4), to_numpy(std::move(pdf), 0));
 }
 
-nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Rows<float, 2>& u) {
+nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference,
+                      const Rows<float, 2>& u) {
   const SceneView& view = scene.accel.view();
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   std::vector<float> wi, point, distance, pdf, scale;
@@ -211,16 +214,26 @@ nb::object functions(const std::string& name, const Column<double>& x) {
   const auto map = [&](auto f) {
     for (size_t i = 0; i < x.size(); ++i) y.push_back(static_cast<double>(f(x.data()[i])));
   };
-  if (name == "sin") map([](double v) { return sincos(static_cast<float>(v)).sin; });
-  else if (name == "cos") map([](double v) { return sincos(static_cast<float>(v)).cos; });
-  else if (name == "atan") map([](double v) { return accuray::atan(static_cast<float>(v)); });
-  else if (name == "asin") map([](double v) { return accuray::asin(static_cast<float>(v)); });
-  else if (name == "acos") map([](double v) { return accuray::acos(static_cast<float>(v)); });
-  else if (name == "exp") map([](double v) { return accuray::exp(v); });
-  else if (name == "log") map([](double v) { return accuray::log(v); });
-  else if (name == "sin64") map([](double v) { return sincos(v).sin; });
-  else if (name == "cos64") map([](double v) { return sincos(v).cos; });
-  else throw std::invalid_argument("there is no function called '" + name + "'");
+  if (name == "sin")
+    map([](double v) { return sincos(static_cast<float>(v)).sin; });
+  else if (name == "cos")
+    map([](double v) { return sincos(static_cast<float>(v)).cos; });
+  else if (name == "atan")
+    map([](double v) { return accuray::atan(static_cast<float>(v)); });
+  else if (name == "asin")
+    map([](double v) { return accuray::asin(static_cast<float>(v)); });
+  else if (name == "acos")
+    map([](double v) { return accuray::acos(static_cast<float>(v)); });
+  else if (name == "exp")
+    map([](double v) { return accuray::exp(v); });
+  else if (name == "log")
+    map([](double v) { return accuray::log(v); });
+  else if (name == "sin64")
+    map([](double v) { return sincos(v).sin; });
+  else if (name == "cos64")
+    map([](double v) { return sincos(v).cos; });
+  else
+    throw std::invalid_argument("there is no function called '" + name + "'");
   return to_numpy(std::move(y), 0);
 }
 

@@ -16,8 +16,8 @@ namespace {
 constexpr int kSamplingVersion = 1;
 
 const char* kind_name(Kind kind) {
-  constexpr const char* names[] = {"bool",      "int",   "float",     "vec",    "enum", "text", "file",
-                                   "transform", "array", "reference", "spectrum"};
+  constexpr const char* names[] = {"bool", "int",       "float", "vec",       "enum",    "text",
+                                   "file", "transform", "array", "reference", "spectrum"};
   return names[static_cast<uint32_t>(kind)];
 }
 
@@ -37,7 +37,8 @@ nb::dict describe(const Param& param) {
   const auto bound = [](double x) { return abs(x) >= unbounded ? nb::object(nb::none()) : nb::cast(x); };
   d["name"] = param.name;
   d["kind"] = kind_name(param.kind);
-  d["default"] = *param.preset == '\0' ? nb::object(nb::none()) : nb::module_::import_("json").attr("loads")(param.preset);
+  d["default"] =
+      *param.preset == '\0' ? nb::object(nb::none()) : nb::module_::import_("json").attr("loads")(param.preset);
   d["required"] = param.required;
   d["min"] = bound(param.low);
   d["max"] = bound(param.high);

@@ -21,7 +21,8 @@ RTCBounds bounds_of(Vec3 center, float radius) {
 template <class F>
 auto with_shape(const EmbreeScene::Analytic& analytic, F&& f) {
   const Tagged shape = analytic.view->geometries[analytic.geometry].shape;
-  return shape.tag == tag_of<Sphere>(Shapes{}) ? f(analytic.view->as<Sphere>(shape)) : f(analytic.view->as<Disk>(shape));
+  return shape.tag == tag_of<Sphere>(Shapes{}) ? f(analytic.view->as<Sphere>(shape))
+                                               : f(analytic.view->as<Disk>(shape));
 }
 
 void bounds_callback(const RTCBoundsFunctionArguments* arguments) {

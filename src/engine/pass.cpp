@@ -21,7 +21,9 @@ void set_float_mode() { _mm_setcsr(_mm_getcsr() | 0x8040u); }
 class PartialFilm {
  public:
   PartialFilm(uint32_t pixels, uint32_t replicates)
-      : replicates_(replicates), sums_(static_cast<size_t>(pixels) * replicates * film_channels), dropped_(static_cast<size_t>(pixels) * replicates) {}
+      : replicates_(replicates),
+        sums_(static_cast<size_t>(pixels) * replicates * film_channels),
+        dropped_(static_cast<size_t>(pixels) * replicates) {}
 
   void add(uint32_t pixel, uint32_t replicate, const Quantized& sample) {
     const size_t slot = static_cast<size_t>(pixel) * replicates_ + replicate;
@@ -130,7 +132,8 @@ bool trace_rays(const SceneView& scene, const EmbreeAccel& accel, const Request&
     const Vec3 direction = load_vec3(directions, ray);
     for (uint32_t i = first; i < first + count; ++i) {
       if (stop) return false;
-      sums.add(ray - begin, i % request.replicates, sample_ray(scene, accel, request, origin, direction, ray, i, inverse_step));
+      sums.add(ray - begin, i % request.replicates,
+               sample_ray(scene, accel, request, origin, direction, ray, i, inverse_step));
     }
   }
   for (uint32_t ray = begin; ray < end; ++ray) sums.flush(ray - begin, film, ray);

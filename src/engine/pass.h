@@ -48,12 +48,13 @@ class Pool {
   std::vector<std::thread> threads_;
 };
 
-// Where the sums of a picture lie. Pixel (x, y) of the window, replicate r, channel c: sums[((y * width + x) * R + r) * 4 + c].
+// Where the sums of a picture lie. Pixel (x, y) of the window, replicate r, channel c: sums[((y * width + x) * R + r) *
+// 4 + c].
 struct FilmView {
   int64_t* sums;
-  uint32_t* dropped;         // per pixel and replicate
-  uint32_t x0, y0;           // the window's corner in the whole picture
-  uint32_t width, height;    // of the window
+  uint32_t* dropped;       // per pixel and replicate
+  uint32_t x0, y0;         // the window's corner in the whole picture
+  uint32_t width, height;  // of the window
 };
 
 struct FilmOverflow : std::runtime_error {

@@ -20,8 +20,8 @@ struct TypeList {
   static constexpr uint32_t size = sizeof...(Ts);
 };
 
-// Calls fn(Type<T>{}) for the T at position `tag` of the list. The lowering writes no tag beyond the list; the last type
-// answers for any that is.
+// Calls fn(Type<T>{}) for the T at position `tag` of the list. The lowering writes no tag beyond the list; the last
+// type answers for any that is.
 template <class T, class... Ts, class Fn>
 ACCURAY_INLINE auto dispatch(TypeList<T, Ts...>, uint32_t tag, Fn&& fn) {
   if constexpr (sizeof...(Ts) == 0) {

@@ -40,12 +40,12 @@ struct Four {
 using f32x4 = Four<float>;
 using u32x4 = Four<uint32_t>;
 
-#define ACCURAY_LANEWISE(V, T, op)                                                                             \
-  inline V operator op(V a, V b) { return {{a[0] op b[0], a[1] op b[1], a[2] op b[2], a[3] op b[3]}}; }        \
-  inline V operator op(V a, T b) { return {{a[0] op b, a[1] op b, a[2] op b, a[3] op b}}; }                    \
-  inline V operator op(T a, V b) { return {{a op b[0], a op b[1], a op b[2], a op b[3]}}; }                    \
-  inline V& operator op##=(V& a, V b) { return a = a op b; }                                                   \
-  inline V& operator op##=(V& a, T b) { return a = a op b; }
+#define ACCURAY_LANEWISE(V, T, op)                                                                      \
+  inline V operator op(V a, V b) { return {{a[0] op b[0], a[1] op b[1], a[2] op b[2], a[3] op b[3]}}; } \
+  inline V operator op(V a, T b) { return {{a[0] op b, a[1] op b, a[2] op b, a[3] op b}}; }             \
+  inline V operator op(T a, V b) { return {{a op b[0], a op b[1], a op b[2], a op b[3]}}; }             \
+  inline V& operator op## = (V & a, V b) { return a = a op b; }                                         \
+  inline V& operator op## = (V & a, T b) { return a = a op b; }
 ACCURAY_LANEWISE(f32x4, float, +)
 ACCURAY_LANEWISE(f32x4, float, -)
 ACCURAY_LANEWISE(f32x4, float, *)

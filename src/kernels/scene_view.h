@@ -16,7 +16,7 @@ constexpr uint32_t lambda_guide_size = 512;
 
 template <class T>
 struct Slice {
-  uint64_t offset;   // bytes from the section's start
+  uint64_t offset;  // bytes from the section's start
   uint32_t section;
   uint32_t count;
 };
@@ -29,14 +29,14 @@ struct Tagged {
 
 struct MaterialRecord {
   Tagged bsdf;
-  SpectrumRef emission;      // none: does not emit
+  SpectrumRef emission;  // none: does not emit
   uint32_t emits_both_sides;
 };
 
 struct GeometryRecord {
-  Tagged shape;              // Mesh, Sphere or Disk; see geometry/list.h
+  Tagged shape;  // Mesh, Sphere or Disk; see geometry/list.h
   uint32_t material;
-  uint32_t lights;           // first entry in light_of_primitive; none: does not emit
+  uint32_t lights;  // first entry in light_of_primitive; none: does not emit
 };
 
 // A copy of the geometries [first, first + count) under a transform.
@@ -44,8 +44,8 @@ struct InstanceRecord {
   Transform to_world;
   Transform to_object;
   uint32_t first, count;
-  uint32_t lights;           // first entry in lights_of_instance, one per geometry; none: nothing emits
-  uint32_t material;         // overrides the prototypes' material; none: does not
+  uint32_t lights;    // first entry in lights_of_instance, one per geometry; none: nothing emits
+  uint32_t material;  // overrides the prototypes' material; none: does not
 };
 
 struct LightRecord {
@@ -56,9 +56,9 @@ struct LightRecord {
 
 struct Root {
   uint32_t version;
-  uint32_t environment;      // index of the constant environment light; none: black
+  uint32_t environment;  // index of the constant environment light; none: black
   uint32_t hide_environment;
-  uint32_t top_geometries;   // geometries [0, top_geometries) are in the scene itself, the others only instanced
+  uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
   uint32_t reserved[3];
   Tagged camera, filter, integrator;
@@ -66,15 +66,15 @@ struct Root {
   Slice<GeometryRecord> geometries;
   Slice<InstanceRecord> instances;
   Slice<LightRecord> lights;
-  Slice<float> light_cdf;              // running sums of selection probabilities, lights + 1 entries
+  Slice<float> light_cdf;  // running sums of selection probabilities, lights + 1 entries
   Slice<uint32_t> light_of_primitive;
   Slice<uint32_t> lights_of_instance;
   Slice<SpectrumRecord> spectra;
   Slice<float> tables;
-  Slice<float> response;               // sensor at 360 .. 830 nm, four channels per node
-  Slice<float> lambda_cdf;             // wavelength sampling: running sums, 471 entries
-  Slice<uint32_t> lambda_guide;        // first cell of lambda_cdf that each of lambda_guide_size parts of [0, 1) meets
-  Slice<uint32_t> parameters;          // the types' structs, in 32-bit words
+  Slice<float> response;         // sensor at 360 .. 830 nm, four channels per node
+  Slice<float> lambda_cdf;       // wavelength sampling: running sums, 471 entries
+  Slice<uint32_t> lambda_guide;  // first cell of lambda_cdf that each of lambda_guide_size parts of [0, 1) meets
+  Slice<uint32_t> parameters;    // the types' structs, in 32-bit words
 };
 
 struct SceneView {

@@ -22,17 +22,17 @@ struct Param {
   const char* name = "";
   Kind kind = Kind::real;
   const char* doc = "";
-  const char* preset = "";          // default as JSON text; "" means none
-  double low = -unbounded;          // smallest and largest value allowed
+  const char* preset = "";  // default as JSON text; "" means none
+  double low = -unbounded;  // smallest and largest value allowed
   double high = unbounded;
   const char* unit = "";
-  const char* choices = "";         // words separated by '|'
-  const char* role = "";            // reflectance, emission, index; material, shape; shape of an array
-  const char* group = "";           // "set:alternative": exactly one alternative of a set is given
+  const char* choices = "";  // words separated by '|'
+  const char* role = "";     // reflectance, emission, index; material, shape; shape of an array
+  const char* group = "";    // "set:alternative": exactly one alternative of a set is given
   bool required = false;
   bool texturable = false;
   bool animatable = false;
-  uint32_t member = no_member;      // byte offset in the type's struct
+  uint32_t member = no_member;  // byte offset in the type's struct
 };
 
 template <uint32_t N>
@@ -52,10 +52,10 @@ struct NoParams {
 
 // Laws that a BSDF obeys; the list tests check each one that is claimed.
 struct Keeps {
-  bool exact_pdf = false;            // pdf() is the density of sample()
-  bool reciprocal = false;           // f(wi, wo) = f(wo, wi), with 1/eta^2 for transmission
-  bool energy_conserving = false;    // albedo never above 1
-  bool stochastic = false;           // eval() is only right in expectation
+  bool exact_pdf = false;          // pdf() is the density of sample()
+  bool reciprocal = false;         // f(wi, wo) = f(wo, wi), with 1/eta^2 for transmission
+  bool energy_conserving = false;  // albedo never above 1
+  bool stochastic = false;         // eval() is only right in expectation
 };
 
 }  // namespace accuray

@@ -12,7 +12,9 @@ namespace {
 Vec3 moved_point(const Matrix& m, Vec3 p) { return to_vec3(transform_point(m, {p.x, p.y, p.z})); }
 Vec3 moved_vector(const Matrix& m, Vec3 v) { return to_vec3(transform_vector(m, {v.x, v.y, v.z})); }
 
-Sphere moved(const Matrix& m, Sphere s) { return {moved_point(m, s.center), static_cast<float>(s.radius * scale_of(m))}; }
+Sphere moved(const Matrix& m, Sphere s) {
+  return {moved_point(m, s.center), static_cast<float>(s.radius * scale_of(m))};
+}
 Disk moved(const Matrix& m, Disk d) {
   return {moved_point(m, d.center), normalize(moved_vector(m, d.normal)), static_cast<float>(d.radius * scale_of(m))};
 }
@@ -55,7 +57,8 @@ SceneBuilder::SceneBuilder(ColourData colour) : spectra_(std::move(colour)), lig
 uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
                                     bool both_sides) {
   const bool emits = emission && !spectra_.is_zero(*emission);
-  materials_.push_back({lower_type(Bsdfs{}, type, values, pool_), {emits ? emission->index : none}, both_sides ? 1u : 0u});
+  materials_.push_back(
+      {lower_type(Bsdfs{}, type, values, pool_), {emits ? emission->index : none}, both_sides ? 1u : 0u});
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 
@@ -81,7 +84,8 @@ uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t li
 uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material) {
   if (material.emission.index == none) return none;
   const auto first = static_cast<uint32_t>(light_of_primitive_.size());
-  const auto lights = lights_.add_mesh(arrays.positions, arrays.indices, material.emission, material.emits_both_sides != 0);
+  const auto lights =
+      lights_.add_mesh(arrays.positions, arrays.indices, material.emission, material.emits_both_sides != 0);
   light_of_primitive_.insert(light_of_primitive_.end(), lights.begin(), lights.end());
   return first;
 }
@@ -93,7 +97,8 @@ uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& m
   return static_cast<uint32_t>(light_of_primitive_.size() - 1);
 }
 
-uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype) {
+uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material,
+                                bool prototype) {
   if (transform) move_mesh(*transform, arrays);
   if (!prototype) {
     for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
@@ -136,12 +141,14 @@ uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, co
 void SceneBuilder::add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
                                 std::optional<uint32_t> material) {
   const Matrix matrix = transform.value_or(identity_matrix);
-  InstanceRecord instance{to_transform(matrix), to_transform(inverse(matrix)), first, count, none, material.value_or(none)};
+  InstanceRecord instance{to_transform(matrix),   to_transform(inverse(matrix)), first, count, none,
+                          material.value_or(none)};
   instance.lights = instance_lights(matrix, instance, material);
   instances_.push_back(instance);
 }
 
-uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material) {
+uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecord& instance,
+                                       std::optional<uint32_t> material) {
   const auto first = static_cast<uint32_t>(lights_of_instance_.size());
   bool any = false;
   for (uint32_t g = instance.first; g < instance.first + instance.count; ++g) {
@@ -202,7 +209,8 @@ void SceneBuilder::set_camera(std::string_view type, const Values& values, doubl
   const auto up = vec_of(values, "up");
   const auto unit = [](std::array<double, 3> v) {
     const double l = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (!(l > 0.0)) throw std::invalid_argument("camera: look_at and up must differ from the viewing position and direction");
+    if (!(l > 0.0))
+      throw std::invalid_argument("camera: look_at and up must differ from the viewing position and direction");
     return std::array<double, 3>{v[0] / l, v[1] / l, v[2] / l};
   };
   const auto crossed = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {

@@ -19,7 +19,6 @@
 
 namespace accuray {
 
-
 // Bulk arrays of a mesh; empty normals or uvs: none.
 struct MeshArrays {
   std::vector<float> positions;
@@ -34,12 +33,14 @@ class SceneBuilder {
 
   SpectrumPool& spectra() { return spectra_; }
 
-  uint32_t add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission, bool both_sides);
+  uint32_t add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
+                        bool both_sides);
   // Each returns the geometry's number. `prototype`: rendered through instances only; these come after all others.
   uint32_t add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype);
-  uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform, uint32_t material,
-                     bool prototype);
-  void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform, std::optional<uint32_t> material);
+  uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,
+                     uint32_t material, bool prototype);
+  void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
+                    std::optional<uint32_t> material);
   void add_light(std::string_view type, const Values& values, SpectrumRef emission);
 
   void set_camera(std::string_view type, const Values& values, double aspect);
@@ -70,7 +71,7 @@ class SceneBuilder {
   std::vector<InstanceRecord> instances_;
   std::vector<uint32_t> light_of_primitive_;
   std::vector<uint32_t> lights_of_instance_;
-  std::vector<Section> bulk_;      // sections 1, 2, ...
+  std::vector<Section> bulk_;  // sections 1, 2, ...
   Vec3 low_{infinity, infinity, infinity}, high_{-infinity, -infinity, -infinity};
 };
 

@@ -20,8 +20,8 @@ class LightTable {
   }
   // Adds the lights of an emissive mesh, in world space, and returns the light of each triangle. Neighbouring triangles
   // that form a rectangle become one light.
-  std::vector<uint32_t> add_mesh(std::span<const float> positions, std::span<const uint32_t> indices, SpectrumRef emission,
-                                 bool both_sides);
+  std::vector<uint32_t> add_mesh(std::span<const float> positions, std::span<const uint32_t> indices,
+                                 SpectrumRef emission, bool both_sides);
 
   const std::vector<LightRecord>& records() const { return records_; }
   // Running sums of the probabilities with which lights are chosen: in proportion to their power as the sensor sees it.

@@ -25,7 +25,9 @@ inline const Value& value_of(const Values& values, std::string_view name) {
   if (found == values.end()) throw std::invalid_argument("missing value of parameter '" + std::string(name) + "'");
   return found->second;
 }
-inline double number_of(const Values& values, std::string_view name) { return std::get<double>(value_of(values, name)); }
+inline double number_of(const Values& values, std::string_view name) {
+  return std::get<double>(value_of(values, name));
+}
 inline std::array<double, 3> vec_of(const Values& values, std::string_view name) {
   return std::get<std::array<double, 3>>(value_of(values, name));
 }
@@ -36,7 +38,8 @@ inline Vec3 to_vec3(const std::array<double, 3>& v) {
 // Writes one value into the struct of `size` bytes at `target` as the parameter's kind asks.
 inline void write_member(const Param& param, const Value& value, uint8_t* target, size_t size) {
   const auto put = [&](auto x) {
-    if (param.member + sizeof(x) > size) throw std::logic_error(std::string("parameter '") + param.name + "' does not fit its member");
+    if (param.member + sizeof(x) > size)
+      throw std::logic_error(std::string("parameter '") + param.name + "' does not fit its member");
     std::memcpy(target + param.member, &x, sizeof(x));
   };
   switch (param.kind) {
@@ -63,7 +66,8 @@ T struct_of(const Values& values) {
   constexpr auto params = T::params();
   for (uint32_t i = 0; i < params.size; ++i) {
     const Param& param = params.items[i];
-    if (param.member != no_member) write_member(param, value_of(values, param.name), reinterpret_cast<uint8_t*>(&result), sizeof(T));
+    if (param.member != no_member)
+      write_member(param, value_of(values, param.name), reinterpret_cast<uint8_t*>(&result), sizeof(T));
   }
   return result;
 }
@@ -97,7 +101,8 @@ uint32_t tag_named(TypeList<Ts...>, std::string_view name) {
 template <class... Ts>
 Tagged lower_type(TypeList<Ts...> list, std::string_view name, const Values& values, ParameterPool& pool) {
   const uint32_t tag = tag_named(list, name);
-  const uint32_t offset = dispatch(list, tag, [&](auto type) { return pool.add(struct_of<typename decltype(type)::type>(values)); });
+  const uint32_t offset =
+      dispatch(list, tag, [&](auto type) { return pool.add(struct_of<typename decltype(type)::type>(values)); });
   return {tag, offset};
 }
 

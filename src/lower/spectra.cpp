@@ -50,7 +50,8 @@ SpectrumRef SpectrumPool::add_sampled(const std::vector<double>& values, double 
   const auto first = static_cast<uint32_t>(tables_.size());
   for (const double v : values) tables_.push_back(static_cast<float>(v));
   const SpectrumForm form = step == 1.0 ? SpectrumForm::table : SpectrumForm::fine;
-  return add({form, static_cast<float>(scale), 0, 0, 0, first, static_cast<uint32_t>(values.size()), static_cast<float>(step)});
+  return add({form, static_cast<float>(scale), 0, 0, 0, first, static_cast<uint32_t>(values.size()),
+              static_cast<float>(step)});
 }
 
 template <class F>
@@ -64,15 +65,18 @@ SpectrumRef SpectrumPool::constant(double value) {
   return add({SpectrumForm::constant, static_cast<float>(value), 0, 0, 0, 0, 0, 0});
 }
 
-SpectrumRef SpectrumPool::table(std::span<const double> wavelengths, std::span<const double> values, bool hold, double scale) {
-  if (wavelengths.size() != values.size() || wavelengths.empty()) throw std::invalid_argument("a spectrum needs as many values as wavelengths");
+SpectrumRef SpectrumPool::table(std::span<const double> wavelengths, std::span<const double> values, bool hold,
+                                double scale) {
+  if (wavelengths.size() != values.size() || wavelengths.empty())
+    throw std::invalid_argument("a spectrum needs as many values as wavelengths");
   if (whole_nanometres(wavelengths)) {
     // An end that drops to zero does so within one cell; the table's node beyond the end is zero.
     return add_function([&](double x) { return interpolate(wavelengths, values, hold, x); }, scale);
   }
   std::vector<double> samples(static_cast<size_t>(lambda_cells / kFineStep + 0.5) + 1);
   for (size_t i = 0; i < samples.size(); ++i) {
-    samples[i] = interpolate(wavelengths, values, hold, static_cast<double>(lambda_min) + static_cast<double>(i) * kFineStep);
+    samples[i] =
+        interpolate(wavelengths, values, hold, static_cast<double>(lambda_min) + static_cast<double>(i) * kFineStep);
   }
   return add_sampled(samples, kFineStep, scale);
 }
@@ -102,7 +106,8 @@ SpectrumRef SpectrumPool::rgb_emission(double r, double g, double b, double scal
   const double largest = std::max({r, g, b});
   if (largest <= 0.0) return constant(0.0);
   const uint32_t white = d65_table();
-  if (r == g && g == b) return add({SpectrumForm::table, static_cast<float>(r * scale), 0, 0, 0, white, lambda_nodes, 1});
+  if (r == g && g == b)
+    return add({SpectrumForm::table, static_cast<float>(r * scale), 0, 0, 0, white, lambda_nodes, 1});
   // Halfway up, where the sigmoid is smooth (Jakob and Hanika 2019, section 5).
   const double m = 2.0 * largest;
   const Sigmoid c = coefficients(r / m, g / m, b / m);
@@ -128,7 +133,8 @@ SpectrumRef SpectrumPool::sellmeier(double a0, std::span<const double> b, std::s
         const double l2 = nm * nm * 1e-6;
         double n2 = 1.0 + a0;
         for (size_t i = 0; i < b.size(); ++i) n2 += b[i] * l2 / (l2 - c[i]);
-        if (!(n2 > 0.0)) throw std::invalid_argument("the Sellmeier formula gives no real index at " + std::to_string(nm) + " nm");
+        if (!(n2 > 0.0))
+          throw std::invalid_argument("the Sellmeier formula gives no real index at " + std::to_string(nm) + " nm");
         return sqrt(n2);
       },
       scale);

@@ -12,8 +12,8 @@ namespace accuray {
 
 // Colour data that lowering needs. All arrays are at 360, 361, ... 830 nm.
 struct ColourData {
-  std::vector<double> cmf;   // 471 x 3, CIE 1931
-  std::vector<double> d65;   // 471, scaled to Y = 1
+  std::vector<double> cmf;  // 471 x 3, CIE 1931
+  std::vector<double> d65;  // 471, scaled to Y = 1
 };
 
 class SpectrumPool {

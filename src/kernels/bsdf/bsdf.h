@@ -22,17 +22,17 @@ namespace accuray {
 enum Lobe : uint32_t {
   lobe_none = 0,
   lobe_diffuse = 1,
-  lobe_specular = 2,      // delta
+  lobe_specular = 2,  // delta
   lobe_transmission = 4,
-  lobe_disperses = 8      // the direction depends on the wavelength: only the hero goes on
+  lobe_disperses = 8  // the direction depends on the wavelength: only the hero goes on
 };
 
 struct BsdfSample {
   Vec3 wi;
   Spectrum weight;
-  float pdf;          // 0 for delta lobes
+  float pdf;  // 0 for delta lobes
   uint32_t lobe;
-  float eta_scale;    // (eta_i / eta_o)^2 of a refraction, else 1: takes radiance scaling out of the roulette
+  float eta_scale;  // (eta_i / eta_o)^2 of a refraction, else 1: takes radiance scaling out of the roulette
 };
 
 inline BsdfSample no_sample() { return {{0, 0, 1}, lanes(0.0f), 0.0f, lobe_none, 1.0f}; }

@@ -26,14 +26,29 @@ struct Conductor {
   static constexpr const char* doc = "A perfectly smooth metal with the exact Fresnel reflectance, in vacuum or air.";
   static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
-    return param_list(
-        Param{.name = "metal", .kind = Kind::text,
-              .doc = "Named metal with measured index: Au, Ag, Cu, Al, Fe, Ti, Cr, Ni, W, Pt, ..., or perfect (reflects all).",
-              .group = "index:metal"},
-        Param{.name = "eta", .kind = Kind::spectrum, .doc = "Real part of the refractive index.", .low = 0, .unit = "1",
-              .role = "index", .group = "index:eta_k", .animatable = true, .member = ACCURAY_OFFSET_OF(Conductor, eta)},
-        Param{.name = "k", .kind = Kind::spectrum, .doc = "Imaginary part of the refractive index.", .low = 0, .unit = "1",
-              .role = "index", .group = "index:eta_k", .animatable = true, .member = ACCURAY_OFFSET_OF(Conductor, k)});
+    return param_list(Param{.name = "metal",
+                            .kind = Kind::text,
+                            .doc = "Named metal with measured index: Au, Ag, Cu, Al, Fe, Ti, Cr, Ni, W, Pt, ..., or "
+                                   "perfect (reflects all).",
+                            .group = "index:metal"},
+                      Param{.name = "eta",
+                            .kind = Kind::spectrum,
+                            .doc = "Real part of the refractive index.",
+                            .low = 0,
+                            .unit = "1",
+                            .role = "index",
+                            .group = "index:eta_k",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Conductor, eta)},
+                      Param{.name = "k",
+                            .kind = Kind::spectrum,
+                            .doc = "Imaginary part of the refractive index.",
+                            .low = 0,
+                            .unit = "1",
+                            .role = "index",
+                            .group = "index:eta_k",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Conductor, k)});
   }
   ConductorAt at(const SceneView& scene, const Wavelengths& wl) const {
     return {scene.spectrum(eta, wl), scene.spectrum(k, wl)};

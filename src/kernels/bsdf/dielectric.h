@@ -10,9 +10,9 @@
 namespace accuray {
 
 struct DielectricAt {
-  Spectrum ior;      // index behind the surface over index before it
-  bool disperses;    // the index depends on the wavelength
-  bool hero_only;    // the other lanes carry nothing any more
+  Spectrum ior;    // index behind the surface over index before it
+  bool disperses;  // the index depends on the wavelength
+  bool hero_only;  // the other lanes carry nothing any more
 
   static constexpr bool delta_only = true;
 
@@ -45,13 +45,20 @@ struct Dielectric {
 
   static constexpr const char* name = "dielectric";
   static constexpr const char* doc =
-      "A perfectly smooth surface of glass, water and the like: exact Fresnel reflection and refraction with dispersion.";
+      "A perfectly smooth surface of glass, water and the like: exact Fresnel reflection and refraction with "
+      "dispersion.";
   static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
-    return param_list(Param{.name = "ior", .kind = Kind::spectrum,
+    return param_list(Param{.name = "ior",
+                            .kind = Kind::spectrum,
                             .doc = "Index behind the surface relative to the index before it: a number, a named glass "
                                    "(N-BK7, SF11, water, diamond, ...), Sellmeier or Cauchy coefficients, or a table.",
-                            .preset = "1.5", .low = 0.05, .high = 20, .unit = "1", .role = "index", .animatable = true,
+                            .preset = "1.5",
+                            .low = 0.05,
+                            .high = 20,
+                            .unit = "1",
+                            .role = "index",
+                            .animatable = true,
                             .member = ACCURAY_OFFSET_OF(Dielectric, ior)});
   }
   DielectricAt at(const SceneView& scene, const Wavelengths& wl) const {

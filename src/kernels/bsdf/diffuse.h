@@ -31,9 +31,17 @@ struct Diffuse {
   static constexpr const char* doc = "A perfectly matte surface (Lambert 1760), the same on both sides.";
   static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
-    return param_list(Param{.name = "reflectance", .kind = Kind::spectrum, .doc = "Share of the light that is reflected.",
-                            .preset = "0.5", .low = 0, .high = 1, .unit = "1", .role = "reflectance", .texturable = true,
-                            .animatable = true, .member = ACCURAY_OFFSET_OF(Diffuse, reflectance)});
+    return param_list(Param{.name = "reflectance",
+                            .kind = Kind::spectrum,
+                            .doc = "Share of the light that is reflected.",
+                            .preset = "0.5",
+                            .low = 0,
+                            .high = 1,
+                            .unit = "1",
+                            .role = "reflectance",
+                            .texturable = true,
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Diffuse, reflectance)});
   }
   DiffuseAt at(const SceneView& scene, const Wavelengths& wl) const { return {scene.spectrum(reflectance, wl)}; }
 };

@@ -13,10 +13,18 @@ using Bsdfs = TypeList<Diffuse, Conductor, Dielectric>;
 // The header that every material has besides its BSDF.
 struct MaterialCommon {
   static constexpr auto params() {
-    return param_list(Param{.name = "emission", .kind = Kind::spectrum, .doc = "Spectral radiance that the surface emits.",
-                            .low = 0, .unit = "W/(m^2 sr nm)", .role = "emission", .animatable = true},
-                      Param{.name = "emission_sides", .kind = Kind::choice, .doc = "Sides that emit.",
-                            .preset = "\"front\"", .choices = "front|both"});
+    return param_list(Param{.name = "emission",
+                            .kind = Kind::spectrum,
+                            .doc = "Spectral radiance that the surface emits.",
+                            .low = 0,
+                            .unit = "W/(m^2 sr nm)",
+                            .role = "emission",
+                            .animatable = true},
+                      Param{.name = "emission_sides",
+                            .kind = Kind::choice,
+                            .doc = "Sides that emit.",
+                            .preset = "\"front\"",
+                            .choices = "front|both"});
   }
 };
 

@@ -15,8 +15,14 @@ struct BoxFilter {
   static constexpr const char* name = "box";
   static constexpr const char* doc = "The mean over a square.";
   static constexpr auto params() {
-    return param_list(Param{.name = "radius", .kind = Kind::real, .doc = "Half width.", .preset = "0.5", .low = 0,
-                            .high = 64, .unit = "px", .member = ACCURAY_OFFSET_OF(BoxFilter, radius)});
+    return param_list(Param{.name = "radius",
+                            .kind = Kind::real,
+                            .doc = "Half width.",
+                            .preset = "0.5",
+                            .low = 0,
+                            .high = 64,
+                            .unit = "px",
+                            .member = ACCURAY_OFFSET_OF(BoxFilter, radius)});
   }
   float sample(float u) const { return (2.0f * u - 1.0f) * radius; }
 };
@@ -27,15 +33,20 @@ struct TentFilter {
   static constexpr const char* name = "tent";
   static constexpr const char* doc = "Falls linearly from the centre.";
   static constexpr auto params() {
-    return param_list(Param{.name = "radius", .kind = Kind::real, .doc = "Half width.", .preset = "1", .low = 0,
-                            .high = 64, .unit = "px", .member = ACCURAY_OFFSET_OF(TentFilter, radius)});
+    return param_list(Param{.name = "radius",
+                            .kind = Kind::real,
+                            .doc = "Half width.",
+                            .preset = "1",
+                            .low = 0,
+                            .high = 64,
+                            .unit = "px",
+                            .member = ACCURAY_OFFSET_OF(TentFilter, radius)});
   }
   float sample(float u) const {
     const float x = u < 0.5f ? sqrt(2.0f * u) - 1.0f : 1.0f - sqrt(2.0f * (1.0f - u));
     return x * radius;
   }
 };
-
 
 // Quantiles of a filter, tabulated while lowering; between them linear, so the density is that of the table's cells.
 constexpr uint32_t quantile_nodes = 129;
@@ -58,10 +69,22 @@ struct GaussianFilter {
   static constexpr const char* name = "gaussian";
   static constexpr const char* doc = "A Gaussian cut off at the radius.";
   static constexpr auto params() {
-    return param_list(Param{.name = "sigma", .kind = Kind::real, .doc = "Standard deviation.", .preset = "0.5", .low = 0.01,
-                            .high = 64, .unit = "px", .member = ACCURAY_OFFSET_OF(GaussianFilter, sigma)},
-                      Param{.name = "radius", .kind = Kind::real, .doc = "Half width.", .preset = "2", .low = 0.01,
-                            .high = 64, .unit = "px", .member = ACCURAY_OFFSET_OF(GaussianFilter, radius)});
+    return param_list(Param{.name = "sigma",
+                            .kind = Kind::real,
+                            .doc = "Standard deviation.",
+                            .preset = "0.5",
+                            .low = 0.01,
+                            .high = 64,
+                            .unit = "px",
+                            .member = ACCURAY_OFFSET_OF(GaussianFilter, sigma)},
+                      Param{.name = "radius",
+                            .kind = Kind::real,
+                            .doc = "Half width.",
+                            .preset = "2",
+                            .low = 0.01,
+                            .high = 64,
+                            .unit = "px",
+                            .member = ACCURAY_OFFSET_OF(GaussianFilter, radius)});
   }
   // Density at t radii from the centre, unnormalised.
   double density(double t) const {
@@ -76,10 +99,17 @@ struct BlackmanHarrisFilter {
   Quantiles quantiles;
 
   static constexpr const char* name = "blackman_harris";
-  static constexpr const char* doc = "The four-term window of Harris 1978: close to a Gaussian, exactly zero at its edge.";
+  static constexpr const char* doc =
+      "The four-term window of Harris 1978: close to a Gaussian, exactly zero at its edge.";
   static constexpr auto params() {
-    return param_list(Param{.name = "radius", .kind = Kind::real, .doc = "Half width.", .preset = "1.5", .low = 0.01,
-                            .high = 64, .unit = "px", .member = ACCURAY_OFFSET_OF(BlackmanHarrisFilter, radius)});
+    return param_list(Param{.name = "radius",
+                            .kind = Kind::real,
+                            .doc = "Half width.",
+                            .preset = "1.5",
+                            .low = 0.01,
+                            .high = 64,
+                            .unit = "px",
+                            .member = ACCURAY_OFFSET_OF(BlackmanHarrisFilter, radius)});
   }
   double density(double t) const {
     const double c1 = sincos(3.14159265358979323846 * t).cos;

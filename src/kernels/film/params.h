@@ -8,32 +8,67 @@ namespace accuray {
 struct FilmCommon {
   static constexpr auto params() {
     return param_list(
-        Param{.name = "width", .kind = Kind::integer, .doc = "Pixels across.", .preset = "512", .low = 1, .high = 65536, .unit = "px"},
-        Param{.name = "height", .kind = Kind::integer, .doc = "Pixels down.", .preset = "512", .low = 1, .high = 65536, .unit = "px"},
-        Param{.name = "exposure", .kind = Kind::real,
-              .doc = "Exposure of the PNG in stops; the film's default unit follows it.", .preset = "0", .low = -60,
-              .high = 60, .unit = "EV"},
-        Param{.name = "white_balance", .kind = Kind::spectrum,
-              .doc = "Light that shall look white: Bradford adaptation of the colours from it to D65.", .low = 0,
+        Param{.name = "width",
+              .kind = Kind::integer,
+              .doc = "Pixels across.",
+              .preset = "512",
+              .low = 1,
+              .high = 65536,
+              .unit = "px"},
+        Param{.name = "height",
+              .kind = Kind::integer,
+              .doc = "Pixels down.",
+              .preset = "512",
+              .low = 1,
+              .high = 65536,
+              .unit = "px"},
+        Param{.name = "exposure",
+              .kind = Kind::real,
+              .doc = "Exposure of the PNG in stops; the film's default unit follows it.",
+              .preset = "0",
+              .low = -60,
+              .high = 60,
+              .unit = "EV"},
+        Param{.name = "white_balance",
+              .kind = Kind::spectrum,
+              .doc = "Light that shall look white: Bradford adaptation of the colours from it to D65.",
+              .low = 0,
               .role = "emission"},
-        Param{.name = "hide_environment", .kind = Kind::boolean,
-              .doc = "Camera rays that leave the scene show black with alpha 0; the environment still lights the scene.",
-              .preset = "false"},
-        Param{.name = "unit", .kind = Kind::real,
-              .doc = "Step of the film's fixed-point sums, rounded to a power of two; by default 2^-24 of the exposed white.",
-              .low = 1e-30, .high = 1});
+        Param{
+            .name = "hide_environment",
+            .kind = Kind::boolean,
+            .doc = "Camera rays that leave the scene show black with alpha 0; the environment still lights the scene.",
+            .preset = "false"},
+        Param{.name = "unit",
+              .kind = Kind::real,
+              .doc = "Step of the film's fixed-point sums, rounded to a power of two; by default 2^-24 of the exposed "
+                     "white.",
+              .low = 1e-30,
+              .high = 1});
   }
 };
 
 struct RenderCommon {
   static constexpr auto params() {
     return param_list(
-        Param{.name = "spp", .kind = Kind::integer, .doc = "Samples per pixel.", .preset = "64", .low = 1, .high = 4294967295.0},
-        Param{.name = "seed", .kind = Kind::integer, .doc = "Seed of all random decisions.", .preset = "0", .low = 0,
+        Param{.name = "spp",
+              .kind = Kind::integer,
+              .doc = "Samples per pixel.",
+              .preset = "64",
+              .low = 1,
               .high = 4294967295.0},
-        Param{.name = "replicates", .kind = Kind::integer,
+        Param{.name = "seed",
+              .kind = Kind::integer,
+              .doc = "Seed of all random decisions.",
+              .preset = "0",
+              .low = 0,
+              .high = 4294967295.0},
+        Param{.name = "replicates",
+              .kind = Kind::integer,
               .doc = "Independently scrambled parts of a pixel's samples; the error bars come from their spread.",
-              .preset = "4", .low = 1, .high = 16});
+              .preset = "4",
+              .low = 1,
+              .high = 16});
   }
 };
 

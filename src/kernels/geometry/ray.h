@@ -19,10 +19,10 @@ struct Ray {
 // The closest intersection: which primitive of which geometry, and where on it.
 struct Hit {
   float t = infinity;
-  float u = 0.0f, v = 0.0f;      // barycentric coordinates of vertices 1 and 2
+  float u = 0.0f, v = 0.0f;  // barycentric coordinates of vertices 1 and 2
   uint32_t primitive = 0;
-  uint32_t geometry = none;      // index in SceneView::geometries; none: the ray left the scene
-  uint32_t instance = none;      // index in SceneView::instances; none: not instanced
+  uint32_t geometry = none;  // index in SceneView::geometries; none: the ray left the scene
+  uint32_t instance = none;  // index in SceneView::instances; none: not instanced
 };
 
 }  // namespace accuray

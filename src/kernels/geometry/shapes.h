@@ -9,28 +9,47 @@
 namespace accuray {
 
 struct Mesh {
-  Slice<float> positions;    // 3 per vertex, followed by one unused float (Embree reads 16 bytes)
-  Slice<uint32_t> indices;   // 3 per triangle
-  Slice<float> normals;      // 3 per vertex, or empty: flat shading
-  Slice<float> uvs;          // 2 per vertex, or empty
+  Slice<float> positions;   // 3 per vertex, followed by one unused float (Embree reads 16 bytes)
+  Slice<uint32_t> indices;  // 3 per triangle
+  Slice<float> normals;     // 3 per vertex, or empty: flat shading
+  Slice<float> uvs;         // 2 per vertex, or empty
 
   static constexpr const char* name = "mesh";
   static constexpr const char* doc =
       "Triangles, from an OBJ or PLY file or from arrays. The front side is where the vertices run counter-clockwise.";
   static constexpr auto params() {
     return param_list(
-        Param{.name = "file", .kind = Kind::file, .doc = "OBJ or PLY file.", .choices = ".obj|.ply", .group = "geometry:file"},
-        Param{.name = "positions", .kind = Kind::array, .doc = "Vertex positions.", .unit = "m", .role = "Nx3",
-              .group = "geometry:arrays", .animatable = true},
-        Param{.name = "faces", .kind = Kind::array,
-              .doc = "Vertex indices of polygons with three or more corners; a polygon is split as a fan from its first.",
-              .low = 0, .role = "faces", .group = "geometry:arrays"},
-        Param{.name = "normals", .kind = Kind::array, .doc = "Vertex normals; only with positions.", .role = "Nx3",
+        Param{.name = "file",
+              .kind = Kind::file,
+              .doc = "OBJ or PLY file.",
+              .choices = ".obj|.ply",
+              .group = "geometry:file"},
+        Param{.name = "positions",
+              .kind = Kind::array,
+              .doc = "Vertex positions.",
+              .unit = "m",
+              .role = "Nx3",
+              .group = "geometry:arrays",
+              .animatable = true},
+        Param{
+            .name = "faces",
+            .kind = Kind::array,
+            .doc = "Vertex indices of polygons with three or more corners; a polygon is split as a fan from its first.",
+            .low = 0,
+            .role = "faces",
+            .group = "geometry:arrays"},
+        Param{.name = "normals",
+              .kind = Kind::array,
+              .doc = "Vertex normals; only with positions.",
+              .role = "Nx3",
               .animatable = true},
         Param{.name = "uvs", .kind = Kind::array, .doc = "Texture coordinates; only with positions.", .role = "Nx2"},
-        Param{.name = "shading", .kind = Kind::choice,
-              .doc = "auto: smooth where there are normals; smooth: normals are made where missing; flat: none are used.",
-              .preset = "\"auto\"", .choices = "auto|flat|smooth"});
+        Param{
+            .name = "shading",
+            .kind = Kind::choice,
+            .doc = "auto: smooth where there are normals; smooth: normals are made where missing; flat: none are used.",
+            .preset = "\"auto\"",
+            .choices = "auto|flat|smooth"});
   }
 };
 
@@ -41,10 +60,21 @@ struct Sphere {
   static constexpr const char* name = "sphere";
   static constexpr const char* doc = "A perfect sphere; its front side is the outside.";
   static constexpr auto params() {
-    return param_list(Param{.name = "center", .kind = Kind::vec, .doc = "Centre.", .preset = "[0, 0, 0]", .unit = "m",
-                            .animatable = true, .member = ACCURAY_OFFSET_OF(Sphere, center)},
-                      Param{.name = "radius", .kind = Kind::real, .doc = "Radius.", .preset = "1", .low = 1e-12,
-                            .unit = "m", .animatable = true, .member = ACCURAY_OFFSET_OF(Sphere, radius)});
+    return param_list(Param{.name = "center",
+                            .kind = Kind::vec,
+                            .doc = "Centre.",
+                            .preset = "[0, 0, 0]",
+                            .unit = "m",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Sphere, center)},
+                      Param{.name = "radius",
+                            .kind = Kind::real,
+                            .doc = "Radius.",
+                            .preset = "1",
+                            .low = 1e-12,
+                            .unit = "m",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Sphere, radius)});
   }
 };
 
@@ -56,12 +86,27 @@ struct Disk {
   static constexpr const char* name = "disk";
   static constexpr const char* doc = "A flat disk; its front side is where the normal points.";
   static constexpr auto params() {
-    return param_list(Param{.name = "center", .kind = Kind::vec, .doc = "Centre.", .preset = "[0, 0, 0]", .unit = "m",
-                            .animatable = true, .member = ACCURAY_OFFSET_OF(Disk, center)},
-                      Param{.name = "normal", .kind = Kind::vec, .doc = "Direction of the front side; any length but zero.",
-                            .preset = "[0, 1, 0]", .animatable = true, .member = ACCURAY_OFFSET_OF(Disk, normal)},
-                      Param{.name = "radius", .kind = Kind::real, .doc = "Radius.", .preset = "1", .low = 1e-12,
-                            .unit = "m", .animatable = true, .member = ACCURAY_OFFSET_OF(Disk, radius)});
+    return param_list(Param{.name = "center",
+                            .kind = Kind::vec,
+                            .doc = "Centre.",
+                            .preset = "[0, 0, 0]",
+                            .unit = "m",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Disk, center)},
+                      Param{.name = "normal",
+                            .kind = Kind::vec,
+                            .doc = "Direction of the front side; any length but zero.",
+                            .preset = "[0, 1, 0]",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Disk, normal)},
+                      Param{.name = "radius",
+                            .kind = Kind::real,
+                            .doc = "Radius.",
+                            .preset = "1",
+                            .low = 1e-12,
+                            .unit = "m",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Disk, radius)});
   }
 };
 
@@ -74,12 +119,27 @@ struct Rectangle {
   static constexpr const char* doc =
       "A flat parallelogram, given by a corner and two edges; its front side is that of edge_u x edge_v.";
   static constexpr auto params() {
-    return param_list(Param{.name = "corner", .kind = Kind::vec, .doc = "One corner.", .preset = "[0, 0, 0]", .unit = "m",
-                            .animatable = true, .member = ACCURAY_OFFSET_OF(Rectangle, corner)},
-                      Param{.name = "edge_u", .kind = Kind::vec, .doc = "First edge.", .preset = "[1, 0, 0]", .unit = "m",
-                            .animatable = true, .member = ACCURAY_OFFSET_OF(Rectangle, edge_u)},
-                      Param{.name = "edge_v", .kind = Kind::vec, .doc = "Second edge.", .preset = "[0, 1, 0]", .unit = "m",
-                            .animatable = true, .member = ACCURAY_OFFSET_OF(Rectangle, edge_v)});
+    return param_list(Param{.name = "corner",
+                            .kind = Kind::vec,
+                            .doc = "One corner.",
+                            .preset = "[0, 0, 0]",
+                            .unit = "m",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Rectangle, corner)},
+                      Param{.name = "edge_u",
+                            .kind = Kind::vec,
+                            .doc = "First edge.",
+                            .preset = "[1, 0, 0]",
+                            .unit = "m",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Rectangle, edge_u)},
+                      Param{.name = "edge_v",
+                            .kind = Kind::vec,
+                            .doc = "Second edge.",
+                            .preset = "[0, 1, 0]",
+                            .unit = "m",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Rectangle, edge_v)});
   }
 };
 
@@ -87,8 +147,11 @@ struct Instance {
   static constexpr const char* name = "instance";
   static constexpr const char* doc = "A copy of prototype shapes under the instance's transform.";
   static constexpr auto params() {
-    return param_list(Param{.name = "of", .kind = Kind::reference, .doc = "Name or list of names of prototype shapes.",
-                            .role = "shape", .required = true});
+    return param_list(Param{.name = "of",
+                            .kind = Kind::reference,
+                            .doc = "Name or list of names of prototype shapes.",
+                            .role = "shape",
+                            .required = true});
   }
 };
 
@@ -96,11 +159,16 @@ struct Instance {
 struct ShapeCommon {
   static constexpr auto params() {
     return param_list(
-        Param{.name = "material", .kind = Kind::reference,
-              .doc = "Name of the material. Required, but for an instance, whose prototypes have theirs.", .role = "material"},
-        Param{.name = "transform", .kind = Kind::transform, .doc = "Object to world: rigid, with a uniform scale.",
+        Param{.name = "material",
+              .kind = Kind::reference,
+              .doc = "Name of the material. Required, but for an instance, whose prototypes have theirs.",
+              .role = "material"},
+        Param{.name = "transform",
+              .kind = Kind::transform,
+              .doc = "Object to world: rigid, with a uniform scale.",
               .animatable = true},
-        Param{.name = "prototype", .kind = Kind::boolean, .doc = "Rendered through instances only.", .preset = "false"});
+        Param{
+            .name = "prototype", .kind = Kind::boolean, .doc = "Rendered through instances only.", .preset = "false"});
   }
 };
 

@@ -17,7 +17,7 @@ struct Surface {
   Vec3 normal;
   Vec3 shading;
   uint32_t material;
-  uint32_t light;       // the light that this point belongs to; none: not emissive
+  uint32_t light;  // the light that this point belongs to; none: not emissive
 };
 
 struct Triangle {
@@ -33,8 +33,12 @@ inline Vec3 load_vec3(const float* values, uint32_t index) {
 inline Triangle triangle_of(const SceneView& scene, const Mesh& mesh, uint32_t primitive) {
   const uint32_t* index = scene.at(mesh.indices) + 3u * primitive;
   const float* positions = scene.at(mesh.positions);
-  return {load_vec3(positions, index[0]), load_vec3(positions, index[1]), load_vec3(positions, index[2]),
-          index[0], index[1], index[2]};
+  return {load_vec3(positions, index[0]),
+          load_vec3(positions, index[1]),
+          load_vec3(positions, index[2]),
+          index[0],
+          index[1],
+          index[2]};
 }
 
 // Barycentric interpolation errs by gamma(7) times the sum of magnitudes (Pharr et al. 2023, eq. 6.33). The
@@ -59,8 +63,8 @@ inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& h
   s.shading = s.normal;
   if (mesh.normals.count != 0) {
     const float* normals = scene.at(mesh.normals);
-    const Vec3 n = fma(w, load_vec3(normals, tri.i0),
-                       fma(hit.u, load_vec3(normals, tri.i1), load_vec3(normals, tri.i2) * hit.v));
+    const Vec3 n =
+        fma(w, load_vec3(normals, tri.i0), fma(hit.u, load_vec3(normals, tri.i1), load_vec3(normals, tri.i2) * hit.v));
     const float squared = length_squared(n);
     if (squared > 0.0f && is_finite(squared)) {
       s.shading = n * (1.0f / sqrt(squared));

@@ -11,8 +11,12 @@ struct DirectLighting {
   static constexpr const char* name = "direct";
   static constexpr const char* doc = "Emission and direct light: paths of one scattering event.";
   static constexpr auto params() {
-    return param_list(Param{.name = "strategy", .kind = Kind::choice, .doc = "As for path.", .preset = "\"mis\"",
-                            .choices = "mis|light|bsdf", .member = ACCURAY_OFFSET_OF(DirectLighting, strategy)});
+    return param_list(Param{.name = "strategy",
+                            .kind = Kind::choice,
+                            .doc = "As for path.",
+                            .preset = "\"mis\"",
+                            .choices = "mis|light|bsdf",
+                            .member = ACCURAY_OFFSET_OF(DirectLighting, strategy)});
   }
   template <Accel A>
   void trace(const SceneView& scene, const A& accel, Path& path) const {

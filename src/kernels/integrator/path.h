@@ -20,19 +20,35 @@ struct PathTracing {
   static constexpr const char* doc = "Path tracing with next-event estimation and multiple importance sampling.";
   static constexpr auto params() {
     return param_list(
-        Param{.name = "max_depth", .kind = Kind::integer,
+        Param{.name = "max_depth",
+              .kind = Kind::integer,
               .doc = "Largest number of scattering events: 0 shows emission, 1 direct light, -1 all light.",
-              .preset = "-1", .low = -1, .high = 1e6, .member = ACCURAY_OFFSET_OF(PathTracing, max_depth)},
-        Param{.name = "depth_budget", .kind = Kind::integer,
+              .preset = "-1",
+              .low = -1,
+              .high = 1e6,
+              .member = ACCURAY_OFFSET_OF(PathTracing, max_depth)},
+        Param{.name = "depth_budget",
+              .kind = Kind::integer,
               .doc = "Weighted depth that a path may spend: a transmission costs 1, a specular reflection 2, a diffuse "
                      "one 4; 0 sets no such limit.",
-              .preset = "0", .low = 0, .high = 1e6, .member = ACCURAY_OFFSET_OF(PathTracing, depth_budget)},
-        Param{.name = "roulette_depth", .kind = Kind::integer,
-              .doc = "Scattering events before Russian roulette starts; it never biases the picture.", .preset = "5",
-              .low = 1, .high = 1e6, .member = ACCURAY_OFFSET_OF(PathTracing, roulette_depth)},
-        Param{.name = "strategy", .kind = Kind::choice,
-              .doc = "Which estimates of direct light count: mis combines both and is the best; light and bsdf use one.",
-              .preset = "\"mis\"", .choices = "mis|light|bsdf", .member = ACCURAY_OFFSET_OF(PathTracing, strategy)});
+              .preset = "0",
+              .low = 0,
+              .high = 1e6,
+              .member = ACCURAY_OFFSET_OF(PathTracing, depth_budget)},
+        Param{.name = "roulette_depth",
+              .kind = Kind::integer,
+              .doc = "Scattering events before Russian roulette starts; it never biases the picture.",
+              .preset = "5",
+              .low = 1,
+              .high = 1e6,
+              .member = ACCURAY_OFFSET_OF(PathTracing, roulette_depth)},
+        Param{
+            .name = "strategy",
+            .kind = Kind::choice,
+            .doc = "Which estimates of direct light count: mis combines both and is the best; light and bsdf use one.",
+            .preset = "\"mis\"",
+            .choices = "mis|light|bsdf",
+            .member = ACCURAY_OFFSET_OF(PathTracing, strategy)});
   }
 
   bool may_scatter(const Path& path) const { return max_depth < 0 || path.depth < static_cast<uint32_t>(max_depth); }
@@ -62,7 +78,8 @@ struct PathTracing {
     const Vec2 u_light = {u_direction[2], u_direction[3]};
     const Vec2 u_bsdf = {u_direction[0], u_direction[1]};
     const MaterialRecord& material = scene.materials[surface.material];
-    const f32x4 u_decision = needs_decisions(scene, material, path) ? path.sampler.draw(decision_set(path)) : lanes(0.0f);
+    const f32x4 u_decision =
+        needs_decisions(scene, material, path) ? path.sampler.draw(decision_set(path)) : lanes(0.0f);
     const float u_choice = u_decision[0];
     const float u_lobe = u_decision[1];
     const float u_roulette = u_decision[2];

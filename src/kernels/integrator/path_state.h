@@ -9,20 +9,20 @@
 namespace accuray {
 
 struct Path {
-  Ray ray;                // the ray to follow next
-  Hit hit;                // what it met
+  Ray ray;  // the ray to follow next
+  Hit hit;  // what it met
   Wavelengths wl;
-  Spectrum throughput;    // product of the weights so far
-  Spectrum radiance;      // what the path has gathered
+  Spectrum throughput;  // product of the weights so far
+  Spectrum radiance;    // what the path has gathered
   Sampler sampler;
-  Vec3 origin;            // the vertex that the ray leaves, before it was moved off its surface
-  Vec3 origin_normal;     // shading normal there; zero at the camera
-  float bsdf_pdf;         // density of the ray's direction; 0 after a delta lobe or at the camera
-  float eta_scale;        // (eta now / eta at the camera)^2: radiance scaling, kept out of the roulette
-  float alpha;            // 1 where the camera saw something
-  uint32_t depth;         // scattering events so far
-  uint32_t spent;         // of the weighted depth budget
-  uint32_t medium;        // index of the medium around the ray; none: vacuum
+  Vec3 origin;         // the vertex that the ray leaves, before it was moved off its surface
+  Vec3 origin_normal;  // shading normal there; zero at the camera
+  float bsdf_pdf;      // density of the ray's direction; 0 after a delta lobe or at the camera
+  float eta_scale;     // (eta now / eta at the camera)^2: radiance scaling, kept out of the roulette
+  float alpha;         // 1 where the camera saw something
+  uint32_t depth;      // scattering events so far
+  uint32_t spent;      // of the weighted depth budget
+  uint32_t medium;     // index of the medium around the ray; none: vacuum
   bool alive;
 };
 
@@ -33,8 +33,7 @@ inline uint32_t direction_set(const Path& path) { return 2u + 2u * path.depth; }
 inline uint32_t decision_set(const Path& path) { return 3u + 2u * path.depth; }
 
 inline Path start_path(const Ray& ray, const Wavelengths& wl, const Sampler& sampler) {
-  return {ray,  Hit{}, wl,   lanes(1.0f), lanes(0.0f), sampler, ray.origin, {0, 0, 0},
-          0.0f, 1.0f,  1.0f, 0,           0,           none,    true};
+  return {ray, Hit{}, wl, lanes(1.0f), lanes(0.0f), sampler, ray.origin, {0, 0, 0}, 0.0f, 1.0f, 1.0f, 0, 0, none, true};
 }
 
 }  // namespace accuray

@@ -12,10 +12,16 @@ struct Reference {
   int32_t max_depth;
 
   static constexpr const char* name = "reference";
-  static constexpr const char* doc = "The naive path tracer that the others are tested against: slow, simple, unbiased.";
+  static constexpr const char* doc =
+      "The naive path tracer that the others are tested against: slow, simple, unbiased.";
   static constexpr auto params() {
-    return param_list(Param{.name = "max_depth", .kind = Kind::integer, .doc = "Largest number of scattering events; -1: all.",
-                            .preset = "-1", .low = -1, .high = 1e6, .member = ACCURAY_OFFSET_OF(Reference, max_depth)});
+    return param_list(Param{.name = "max_depth",
+                            .kind = Kind::integer,
+                            .doc = "Largest number of scattering events; -1: all.",
+                            .preset = "-1",
+                            .low = -1,
+                            .high = 1e6,
+                            .member = ACCURAY_OFFSET_OF(Reference, max_depth)});
   }
 
   template <Accel A>
@@ -57,7 +63,8 @@ struct Reference {
       const Vec3 wi = frame.to_local(light.wi);
       if ((dot(surface.normal, light.wi) > 0.0f) != (wi.z > 0.0f)) continue;
       const float share = visible_share(accel, surface, light, path.ray.time);
-      path.radiance += path.throughput * bsdf.eval(wo, wi) * scene.spectrum(record.emission, path.wl) * (light.scale * share);
+      path.radiance +=
+          path.throughput * bsdf.eval(wo, wi) * scene.spectrum(record.emission, path.wl) * (light.scale * share);
     }
   }
 };

@@ -1,4 +1,5 @@
-// One sample of one pixel, or of one probe ray: the pure function of (scene, seed, pixel, index) that everything adds up.
+// One sample of one pixel, or of one probe ray: the pure function of (scene, seed, pixel, index) that everything adds
+// up.
 #pragma once
 
 #include "kernels/camera/list.h"
@@ -13,7 +14,7 @@ struct Request {
   Observer observer;
   uint32_t seed;
   uint32_t replicates;
-  uint32_t width, height;   // of the whole picture
+  uint32_t width, height;  // of the whole picture
 };
 
 // Every pixel and replicate has a scramble of its own; the replicate takes turns with the sample number.
@@ -69,7 +70,8 @@ inline Quantized sample_ray(const SceneView& scene, const A& accel, const Reques
   const uint32_t key = pixel_key(request, number, 0xffffffffu, index);
   const Sampler sampler = sampler_for(request, key, index);
   const f32x4 u = sampler.draw(camera_set);
-  Path path = start_path({origin, direction, infinity, u[3]}, sample_wavelengths(scene, request.observer, u[2]), sampler);
+  Path path =
+      start_path({origin, direction, infinity, u[3]}, sample_wavelengths(scene, request.observer, u[2]), sampler);
   trace(scene, accel, path);
   const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
   return quantize(channels, inverse_step, dither_key(key, index));

@@ -34,7 +34,8 @@ inline Spectrum emitted(const SceneView& scene, const Surface& surface, Vec3 wo,
 }
 
 // Weight of light that the path met by itself, given that sample_light might have found it too.
-inline float hit_weight(const SceneView& scene, Strategy strategy, const Path& path, uint32_t light, const Surface& at) {
+inline float hit_weight(const SceneView& scene, Strategy strategy, const Path& path, uint32_t light,
+                        const Surface& at) {
   if (path.bsdf_pdf == 0.0f || strategy == Strategy::bsdf) return 1.0f;
   if (strategy == Strategy::light) return 0.0f;
   const float chosen = choice_probability(scene, path.origin, path.origin_normal, path.ray.time, light);

@@ -12,8 +12,14 @@ struct ConstantLight {
   static constexpr const char* name = "constant";
   static constexpr const char* doc = "An infinitely distant environment of equal radiance in all directions.";
   static constexpr auto params() {
-    return param_list(Param{.name = "radiance", .kind = Kind::spectrum, .doc = "Spectral radiance.", .preset = "1",
-                            .low = 0, .unit = "W/(m^2 sr nm)", .role = "emission", .animatable = true});
+    return param_list(Param{.name = "radiance",
+                            .kind = Kind::spectrum,
+                            .doc = "Spectral radiance.",
+                            .preset = "1",
+                            .low = 0,
+                            .unit = "W/(m^2 sr nm)",
+                            .role = "emission",
+                            .animatable = true});
   }
 
   LightSample sample(Vec3, Vec2 u) const {

@@ -15,10 +15,10 @@
 namespace accuray {
 
 struct LightSample {
-  Vec3 wi;          // unit, from the reference to the light
-  Vec3 point;       // on the light, if `distance` is finite
-  Vec3 error;       // bound of the point's error
-  Vec3 normal;      // of the light there; zero for points
+  Vec3 wi;      // unit, from the reference to the light
+  Vec3 point;   // on the light, if `distance` is finite
+  Vec3 error;   // bound of the point's error
+  Vec3 normal;  // of the light there; zero for points
   float distance;
   float pdf;
   float scale;
@@ -26,8 +26,8 @@ struct LightSample {
 
 inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0.0f, 0.0f, 0.0f}; }
 
-// A flat light is sampled by solid angle from near by, where the density of its points varies without bound, and by area
-// from afar, where that is as good and cheaper. The same function of the reference decides in sample() and pdf().
+// A flat light is sampled by solid angle from near by, where the density of its points varies without bound, and by
+// area from afar, where that is as good and cheaper. The same function of the reference decides in sample() and pdf().
 inline bool is_near(Vec3 reference, Vec3 middle, float radius_squared) {
   return length_squared(middle - reference) < 16.0f * radius_squared;
 }

@@ -12,10 +12,21 @@ struct PointLight {
   static constexpr const char* name = "point";
   static constexpr const char* doc = "A point that radiates equally in all directions; no path can hit it.";
   static constexpr auto params() {
-    return param_list(Param{.name = "position", .kind = Kind::vec, .doc = "Where it is.", .preset = "[0, 0, 0]", .unit = "m",
-                            .animatable = true, .member = ACCURAY_OFFSET_OF(PointLight, position)},
-                      Param{.name = "intensity", .kind = Kind::spectrum, .doc = "Spectral radiant intensity.",
-                            .preset = "1", .low = 0, .unit = "W/(sr nm)", .role = "emission", .animatable = true});
+    return param_list(Param{.name = "position",
+                            .kind = Kind::vec,
+                            .doc = "Where it is.",
+                            .preset = "[0, 0, 0]",
+                            .unit = "m",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(PointLight, position)},
+                      Param{.name = "intensity",
+                            .kind = Kind::spectrum,
+                            .doc = "Spectral radiant intensity.",
+                            .preset = "1",
+                            .low = 0,
+                            .unit = "W/(sr nm)",
+                            .role = "emission",
+                            .animatable = true});
   }
 
   LightSample sample(Vec3 reference, Vec2) const {

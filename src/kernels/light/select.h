@@ -6,12 +6,13 @@
 namespace accuray {
 
 struct LightChoice {
-  uint32_t light;     // none if the scene has no light
+  uint32_t light;  // none if the scene has no light
   float probability;
 };
 
 // Point, normal and time are what a light tree will choose by; selection by power looks at none of them.
-inline LightChoice choose_light(const SceneView& scene, Vec3 /*point*/, Vec3 /*normal or zero*/, float /*time*/, float u) {
+inline LightChoice choose_light(const SceneView& scene, Vec3 /*point*/, Vec3 /*normal or zero*/, float /*time*/,
+                                float u) {
   const uint32_t count = scene.root->lights.count;
   if (count == 0) return {none, 0.0f};
   uint32_t low = 0;

@@ -52,8 +52,7 @@ inline float atan(float x) {
     t = (a - 1.0f) / (a + 1.0f);
   }
   const float z = t * t;
-  const float p =
-      fma(fma(fma(8.05374449538e-2f, z, -1.38776856032e-1f), z, 1.99777106478e-1f), z, -3.33329491539e-1f);
+  const float p = fma(fma(fma(8.05374449538e-2f, z, -1.38776856032e-1f), z, 1.99777106478e-1f), z, -3.33329491539e-1f);
   const float result = base + fma(p * z, t, t);
   return x < 0.0f ? -result : result;
 }
@@ -99,7 +98,8 @@ inline double log(double x) {
   const double z = s * s;
   double sum = 0.0;
   for (int32_t n = 27; n > 0; n -= 2) sum = fma(sum, z, 1.0 / n);
-  return fma(static_cast<double>(k), 0x1.62e42fefa39efp-1, fma(static_cast<double>(k), 0x1.abc9e3b39803fp-56, 2.0 * s * sum));
+  return fma(static_cast<double>(k), 0x1.62e42fefa39efp-1,
+             fma(static_cast<double>(k), 0x1.abc9e3b39803fp-56, 2.0 * s * sum));
 }
 
 struct SinCosDouble {

@@ -8,7 +8,9 @@ namespace accuray {
 constexpr float machine_epsilon = 0x1p-24f;
 
 // Bound of the relative error of n roundings in a row (Higham 2002, lemma 3.1).
-constexpr float gamma(int n) { return (static_cast<float>(n) * machine_epsilon) / (1.0f - static_cast<float>(n) * machine_epsilon); }
+constexpr float gamma(int n) {
+  return (static_cast<float>(n) * machine_epsilon) / (1.0f - static_cast<float>(n) * machine_epsilon);
+}
 
 // The neighbour of x away from zero in the direction of `toward`'s sign.
 inline float next_after(float x, float toward) {

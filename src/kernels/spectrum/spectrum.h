@@ -6,11 +6,11 @@
 namespace accuray {
 
 enum class SpectrumForm : uint32_t {
-  constant,   // scale
-  table,      // scale * table at 1 nm
-  fine,       // scale * table with a step of its own
-  sigmoid,    // scale * S(c0 t^2 + c1 t + c2), t = (lambda - 360) / 470 (Jakob and Hanika 2019)
-  lit_sigmoid // the same times a table at 1 nm: an RGB light under a white
+  constant,    // scale
+  table,       // scale * table at 1 nm
+  fine,        // scale * table with a step of its own
+  sigmoid,     // scale * S(c0 t^2 + c1 t + c2), t = (lambda - 360) / 470 (Jakob and Hanika 2019)
+  lit_sigmoid  // the same times a table at 1 nm: an RGB light under a white
 };
 
 struct SpectrumRecord {
