@@ -11,9 +11,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from benchmarks import memory, peers, report, settings, speed, startup, threads
+from benchmarks import memory, peers, replay, report, settings, speed, startup, threads
 
-BENCHMARKS = ("cornell", "million", "efficiency", "startup", "memory", "threads")
+BENCHMARKS = ("cornell", "million", "efficiency", "replay", "startup", "memory", "threads")
 QUICK = {"repeats": 2, "spp": 4, "reference_factor": 16, "runs": 3}
 """``--quick`` shows that everything runs; its figures are not comparable."""
 
@@ -132,6 +132,14 @@ def _threads(options: speed.Options, _arguments: argparse.Namespace) -> Any:
     return rows
 
 
+def _replay(options: speed.Options, _arguments: argparse.Namespace) -> Any:
+    if "accuray" not in options.wanted:
+        return []
+    found = replay.measure(options.work, options.repeats, options.spp or settings.REPLAY_SPP)
+    print(replay.text(found))
+    return found
+
+
 def _failures(result: dict[str, Any]) -> bool:
     """Whether a renderer failed; one that is not installed is reported in its row but is no failure."""
     rows = [row for name in BENCHMARKS for row in result.get(name, [])]
@@ -142,6 +150,7 @@ RUN: dict[str, Callable[[speed.Options, argparse.Namespace], Any]] = {
     "cornell": _speed("cornell"),
     "million": _speed("million"),
     "efficiency": _efficiency,
+    "replay": _replay,
     "startup": _startup,
     "memory": _memory,
     "threads": _threads,

@@ -48,6 +48,10 @@ STARTUP_SIZE = 256
 STARTUP_RUNS = 15
 STARTUP_VARIANT = "llvm_ad_spectral"
 
+REPLAY_SIZE = 256
+REPLAY_SPP = 8
+"""Recorded rays take some hundred bytes each in their various layouts: 3 million rays in all."""
+
 MEMORY_SIZE = 64
 MEMORY_SPP = 256
 

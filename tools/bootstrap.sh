@@ -120,9 +120,12 @@ build_environment() {
   for group in "$@"; do sync+=(--group "$group"); done
   # Which Python: that of the environment if there is one already, else the machine's python3.
   [ -e .venv ] || export UV_PYTHON="${UV_PYTHON:-$(command -v python3)}"
-  "${sync[@]}" --check 2>/dev/null && return
-  say "building AccuRay into .venv (a few minutes the first time)"
-  "${sync[@]}"
+  if ! "${sync[@]}" --check 2>/dev/null; then
+    say "building AccuRay into .venv (a few minutes the first time)"
+    UV_COMPILE_BYTECODE=1 "${sync[@]}"
+  fi
+  # Our own package lies outside .venv. Compiled here, the command starts fast even where Python may not write bytecode.
+  .venv/bin/python -m compileall -q accuray
 }
 
 [ "$(uname -m)" = x86_64 ] || fail "AccuRay runs on x86-64 processors with AVX2, and this one is $(uname -m)."

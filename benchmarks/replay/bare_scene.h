@@ -7,7 +7,7 @@
 namespace accuray::bench {
 
 struct BareOptions {
-  const char* device;   // Embree's configuration string
+  const char* device;  // Embree's configuration string
   bool robust;
   bool compact;
   RTCBuildQuality quality;

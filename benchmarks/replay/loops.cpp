@@ -9,6 +9,11 @@ namespace accuray::bench {
 
 namespace {
 
+Ray ray_of(const RecordedRay& ray) {
+  return {
+      {ray.origin[0], ray.origin[1], ray.origin[2]}, {ray.direction[0], ray.direction[1], ray.direction[2]}, ray.far};
+}
+
 void load(RTCRay& target, const RecordedRay& ray) {
   target.org_x = ray.origin[0];
   target.org_y = ray.origin[1];
@@ -31,8 +36,8 @@ bool is_blocked(RTCScene scene, const RecordedRay& ray) {
   return r.tfar < 0.0f;
 }
 
-// Answers in `rh`; false: the ray met nothing.
-bool meets(RTCScene scene, const RecordedRay& ray, RTCRayHit& rh) {
+bool meets(RTCScene scene, const RecordedRay& ray) {
+  alignas(16) RTCRayHit rh;
   load(rh.ray, ray);
   rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -145,27 +150,33 @@ struct Bounds {
 
 Tally trace_single(RTCScene scene, std::span<const RecordedRay> rays) {
   Tally tally;
-  alignas(16) RTCRayHit rh;
   for (const RecordedRay& ray : rays) {
     if (ray.shadow) {
       tally.blocked += is_blocked(scene, ray) ? 1 : 0;
     } else {
-      tally.hits += meets(scene, ray, rh) ? 1 : 0;
+      tally.hits += meets(scene, ray) ? 1 : 0;
     }
   }
   return tally;
 }
 
-uint64_t count_mismatches(RTCScene scene, std::span<const RecordedRay> rays) {
-  uint64_t mismatches = 0;
-  alignas(16) RTCRayHit rh;
+Tally trace_own(const EmbreeAccel& accel, std::span<const RecordedRay> rays) {
+  Tally tally;
   for (const RecordedRay& ray : rays) {
-    uint32_t answer = nothing_hit;
     if (ray.shadow) {
-      answer = is_blocked(scene, ray) ? 1u : 0u;
-    } else if (meets(scene, ray, rh)) {
-      answer = digest(rh.ray.tfar, rh.hit.primID, rh.hit.geomID);
+      tally.blocked += accel.transmittance(ray_of(ray)) == 0.0f ? 1 : 0;
+    } else {
+      tally.hits += accel.closest(ray_of(ray)).geometry != none ? 1 : 0;
     }
+  }
+  return tally;
+}
+
+uint64_t count_mismatches(const EmbreeAccel& accel, std::span<const RecordedRay> rays) {
+  uint64_t mismatches = 0;
+  for (const RecordedRay& ray : rays) {
+    const uint32_t answer =
+        ray.shadow ? answer_of(accel.transmittance(ray_of(ray))) : answer_of(accel.closest(ray_of(ray)));
     mismatches += answer != ray.answer ? 1 : 0;
   }
   return mismatches;

@@ -1,4 +1,4 @@
-// Bare loops over recorded rays: nothing but Embree and the copying of rays that it asks for.
+// Bare loops over recorded rays: nothing but the intersector and the copying of rays that it asks for.
 #pragma once
 
 #include <span>
@@ -34,11 +34,13 @@ std::vector<Packet<Width>> pack(std::span<const RecordedRay> rays);
 // The rays of a chunk by kind, octant of the direction, and Morton code of the origin in the chunk's bounds.
 Chunk sorted(const Chunk& chunk);
 
+// By AccuRay's own intersector, which need not be Embree; the other loops are Embree's.
+Tally trace_own(const EmbreeAccel& accel, std::span<const RecordedRay> rays);
 Tally trace_single(RTCScene scene, std::span<const RecordedRay> rays);
 template <uint32_t Width>
 Tally trace_packets(RTCScene scene, std::span<const Packet<Width>> packets);
 
 // Rays whose answer now differs in any bit from the recorded one.
-uint64_t count_mismatches(RTCScene scene, std::span<const RecordedRay> rays);
+uint64_t count_mismatches(const EmbreeAccel& accel, std::span<const RecordedRay> rays);
 
 }  // namespace accuray::bench

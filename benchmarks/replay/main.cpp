@@ -3,7 +3,8 @@
 //   accuray_replay BLOCK WIDTH HEIGHT SPP SEED REPLICATES THREADS REPEATS
 //
 // BLOCK is a lowered scene (see block_file.h). Prints one JSON object. Exit status 1: the recorded and the rendered
-// samples differ, a ray's answer differs when it is traced again, or a loop met clearly other things.
+// samples differ, a ray's answer differs when AccuRay's intersector traces it again, or a loop met clearly other
+// things.
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
@@ -103,7 +104,7 @@ struct Scenes {
 
 struct Loop {
   const char* name;
-  bool counts;  // robust and in recorded order: what a renderer could do
+  bool counts;  // bare Embree, robust and in recorded order: what a renderer could do
   std::function<Tally(size_t)> trace;
   Timing timing{};
   Tally tally{};
@@ -116,11 +117,9 @@ std::vector<Loop> loops_over(const Scenes& scenes, const Rays& rays) {
   const auto packets = [](const BareScene& scene, const auto& chunks) {
     return [&scene, &chunks](size_t i) { return trace_packets(scene.scene(), std::span(chunks[i])); };
   };
-  const RTCScene ours = scenes.ours.scene();
   return {
-      {"single rays, AccuRay's own structure", true, [&, ours](size_t i) { return trace_single(ours, rays.recorded[i]); }},
-      {"packets of 8, AccuRay's own structure", true,
-       [&, ours](size_t i) { return trace_packets(ours, std::span(rays.eights[i])); }},
+      {"single rays, AccuRay's own intersector", false,
+       [&](size_t i) { return trace_own(EmbreeAccel(scenes.ours), rays.recorded[i]); }},
       {"single rays, avx2", true, single(scenes.roomy, rays.recorded)},
       {"packets of 8, avx2", true, packets(scenes.roomy, rays.eights)},
       {"single rays, widest instructions", true, single(scenes.widest, rays.recorded)},
@@ -151,7 +150,7 @@ int replay(const std::string& path, const Request& request, uint32_t spp, uint32
   Recording recording = record(scenes.ours, request, spp, threads);
   const Rays rays(std::move(recording.tiles));
   const uint64_t mismatches = parallel<uint64_t>(threads, rays.recorded.size(), [&](size_t i) {
-    return count_mismatches(scenes.ours.scene(), rays.recorded[i]);
+    return count_mismatches(EmbreeAccel(scenes.ours), rays.recorded[i]);
   });
   bool good = mismatches == 0;
 
@@ -165,10 +164,11 @@ int replay(const std::string& path, const Request& request, uint32_t spp, uint32
     }
   }
 
-  std::printf("{\"samples\": %llu, \"closest\": %llu, \"shadow\": %llu, \"mismatches\": %llu, \"good\": %s, \"render\": {",
-              static_cast<unsigned long long>(request.width) * request.height * spp,
-              static_cast<unsigned long long>(recording.closest), static_cast<unsigned long long>(recording.shadow),
-              static_cast<unsigned long long>(mismatches), good ? "true" : "false");
+  std::printf(
+      "{\"samples\": %llu, \"closest\": %llu, \"shadow\": %llu, \"mismatches\": %llu, \"good\": %s, \"render\": {",
+      static_cast<unsigned long long>(request.width) * request.height * spp,
+      static_cast<unsigned long long>(recording.closest), static_cast<unsigned long long>(recording.shadow),
+      static_cast<unsigned long long>(mismatches), good ? "true" : "false");
   print_timing(rendering);
   std::printf("}, \"loops\": [");
   for (const Loop& loop : loops) {

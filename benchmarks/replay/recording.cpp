@@ -14,12 +14,12 @@ class RecordingAccel {
 
   Hit closest(const Ray& ray) const {
     const Hit hit = inner_->closest(ray);
-    add(ray, false, hit.geometry == none ? nothing_hit : digest(hit.t, hit.primitive, hit.geometry));
+    add(ray, false, answer_of(hit));
     return hit;
   }
   float transmittance(const Ray& ray) const {
     const float share = inner_->transmittance(ray);
-    add(ray, true, share == 0.0f ? 1u : 0u);
+    add(ray, true, answer_of(share));
     return share;
   }
 

@@ -20,11 +20,12 @@ static_assert(sizeof(RecordedRay) == 32);
 
 using Chunk = std::vector<RecordedRay>;
 
-// `answer` of a closest hit, so that equal hits, and in practice only those, have equal answers.
-inline uint32_t digest(float t, uint32_t primitive, uint32_t geometry) {
-  return hash(bits_of(t), primitive, geometry) >> 1;
-}
+// `answer` of a ray; equal hits, and in practice only those, have equal ones.
 constexpr uint32_t nothing_hit = 0;
+inline uint32_t answer_of(const Hit& hit) {
+  return hit.geometry == none ? nothing_hit : hash(bits_of(hit.t), hit.primitive, hit.geometry) >> 1;
+}
+inline uint32_t answer_of(float transmittance) { return transmittance == 0.0f ? 1 : 0; }
 
 struct Recording {
   std::vector<Chunk> tiles;  // the rays of each tile of the picture

@@ -66,6 +66,10 @@ bool count_memory(void* total, ssize_t bytes, bool) {
 }  // namespace
 
 EmbreeScene::EmbreeScene(const SceneView& view) : view_(view), first_instance_(view.root->top_geometries) {
+  if (PackedScene::suits(view_)) {
+    packed_ = std::make_unique<PackedScene>(view_);
+    return;
+  }
   device_ = rtcNewDevice("isa=avx2,frequency_level=simd256");
   if (device_ == nullptr) check("starting Embree");
   rtcSetDeviceMemoryMonitorFunction(device_, count_memory, &bytes_);

@@ -1,4 +1,5 @@
-// The intersector of this machine: Embree over the lowered scene, whose vertex and index bytes it reads in place.
+// The intersector of this machine: Embree over the lowered scene, whose vertex and index bytes it reads in place. Scenes
+// of a few dozen triangles are tested without it: see packed_accel.h.
 #pragma once
 
 #include <memory>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "engine/embree_shim.h"
+#include "engine/packed_accel.h"
 #include "kernels/accel/accel.h"
 
 namespace accuray {
@@ -29,6 +31,8 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   RTCScene scene() const { return scene_; }
+  // The whole scene in packed form; null if it is too large for that.
+  const PackedScene* packed() const { return packed_.get(); }
   uint32_t first_instance() const { return first_instance_; }
   const SceneView& view() const { return view_; }
   size_t bytes() const { return bytes_; }
@@ -52,6 +56,7 @@ class EmbreeScene {
   RTCScene scene_ = nullptr;
   std::vector<RTCScene> prototypes_;
   std::vector<std::unique_ptr<Analytic>> analytic_;
+  std::unique_ptr<PackedScene> packed_;
   uint32_t first_instance_;
   size_t bytes_ = 0;
 };
@@ -59,14 +64,15 @@ class EmbreeScene {
 // What kernels see; one for each thread, because it counts.
 class EmbreeAccel {
  public:
-  explicit EmbreeAccel(const EmbreeScene& scene) : scene_(&scene) {}
+  explicit EmbreeAccel(const EmbreeScene& scene) : scene_(&scene), packed_(scene.packed()) {}
 
   Hit closest(const Ray& ray) const {
+    ++rays_;
+    if (packed_ != nullptr) return packed_->closest(ray);
     alignas(16) RTCRayHit rh;
     embree::prepare(rh);
     load(rh.ray, ray);
     embree::intersect(scene_->scene(), &rh);
-    ++rays_;
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Hit{};
     Hit hit{rh.ray.tfar, rh.hit.u, rh.hit.v, rh.hit.primID, rh.hit.geomID, none};
     if (rh.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
@@ -77,6 +83,8 @@ class EmbreeAccel {
   }
 
   float transmittance(const Ray& ray) const {
+    ++rays_;
+    if (packed_ != nullptr) return packed_->occluded(ray) ? 0.0f : 1.0f;
     alignas(16) RTCRay r;
     r.tnear = 0.0f;
     r.mask = 0xffffffffu;
@@ -84,7 +92,6 @@ class EmbreeAccel {
     r.flags = 0;
     load(r, ray);
     embree::occluded(scene_->scene(), &r);
-    ++rays_;
     return r.tfar < 0.0f ? 0.0f : 1.0f;
   }
 
@@ -103,6 +110,7 @@ class EmbreeAccel {
   }
 
   const EmbreeScene* scene_;
+  const PackedScene* packed_;
   mutable uint64_t rays_ = 0;
 };
 

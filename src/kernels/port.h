@@ -114,8 +114,8 @@ inline uint64_t bits_of(double x) { return __builtin_bit_cast(uint64_t, x); }
 inline double double_of(uint64_t x) { return __builtin_bit_cast(double, x); }
 
 // The compilers' vector types give lane-wise operators, with scalars broadcast.
-typedef float f32x4 __attribute__((vector_size(16)));
-typedef uint32_t u32x4 __attribute__((vector_size(16)));
+using f32x4 = float __attribute__((vector_size(16)));
+using u32x4 = uint32_t __attribute__((vector_size(16)));
 
 inline f32x4 fma(f32x4 a, f32x4 b, f32x4 c) { return _mm_fmadd_ps(a, b, c); }
 inline f32x4 sqrt(f32x4 a) { return _mm_sqrt_ps(a); }

@@ -257,7 +257,7 @@ void SceneBuilder::set_film(double step, bool hide_environment) {
 
 Block SceneBuilder::finish() {
   const std::vector<float> lambda_cdf = lights_.lambda_cdf(scene_radius());
-  std::vector<float> response(4 * lambda_nodes);
+  std::vector<float> response(size_t{4} * lambda_nodes);
   const std::vector<double>& cmf = spectra_.colour().cmf;
   double y_sum = 0.0;
   for (uint32_t i = 0; i < lambda_nodes; ++i) y_sum += cmf[3 * i + 1];

@@ -6,9 +6,10 @@ namespace accuray {
 
 namespace {
 
-Vec3 vertex(std::span<const float> positions, uint32_t index) {
-  return {positions[3 * index], positions[3 * index + 1], positions[3 * index + 2]};
-}
+Vec3 vertex(std::span<const float> positions, uint32_t index) { return load_vec3(positions.data(), index); }
+
+// Sum of the three colour matching functions at 360 + i nm.
+double response_at(const std::vector<double>& cmf, size_t i) { return cmf[3 * i] + cmf[3 * i + 1] + cmf[3 * i + 2]; }
 
 // Four corners in order, if two triangles (a, b, c), (a, c, d) form a rectangle to within rounding.
 bool is_rectangle(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
@@ -81,7 +82,7 @@ std::vector<double> LightTable::weights(float scene_radius) const {
     if (value < 0.0) {
       value = 0.0;
       for (uint32_t i = 0; i < lambda_nodes; ++i) {
-        value += spectra_.value(record.emission, 360.0 + i) * (cmf[3 * i] + cmf[3 * i + 1] + cmf[3 * i + 2]);
+        value += spectra_.value(record.emission, 360.0 + i) * response_at(cmf, i);
       }
     }
     result.push_back(value * power_factor(record, scene_radius));
@@ -135,8 +136,7 @@ std::vector<float> LightTable::lambda_cdf(float scene_radius) const {
       // The largest of the cell's ends and middle: no cell that holds a line gets nothing.
       double emission = 0.0;
       for (int k = 0; k <= 8; ++k) emission = std::max(emission, spectra_.value({s}, 360.0 + i + 0.125 * k));
-      double response = 0.0;
-      for (int c = 0; c < 3; ++c) response += 0.5 * (cmf[3 * i + c] + cmf[3 * i + 3 + c]);
+      const double response = 0.5 * (response_at(cmf, i) + response_at(cmf, i + 1));
       product[i] = sqrt(emission * response);
       sum += product[i];
     }
@@ -144,7 +144,7 @@ std::vector<float> LightTable::lambda_cdf(float scene_radius) const {
     for (uint32_t i = 0; i < lambda_cells; ++i) cells[i] += sum > 0.0 ? weight * product[i] / sum : 0.0;
   }
   if (kinds == 0) {
-    for (uint32_t i = 0; i < lambda_cells; ++i) cells[i] = cmf[3 * i] + cmf[3 * i + 1] + cmf[3 * i + 2];
+    for (uint32_t i = 0; i < lambda_cells; ++i) cells[i] = response_at(cmf, i);
   }
   return running_sums(cells);
 }

@@ -9,7 +9,9 @@ namespace accuray {
 
 namespace {
 
-constexpr double kFineStep = 0.1;  // nm, for tables whose nodes are not whole nanometres
+// Tables whose nodes are not whole nanometres are sampled ten times as finely.
+constexpr double kFineStep = 0.1;  // nm
+constexpr size_t kFineCells = size_t{10} * lambda_cells;
 
 // Value at x of the polyline through the nodes.
 double interpolate(std::span<const double> xs, std::span<const double> ys, bool hold, double x) {
@@ -29,7 +31,7 @@ bool whole_nanometres(std::span<const double> xs) {
 }  // namespace
 
 SpectrumPool::SpectrumPool(ColourData colour) : colour_(std::move(colour)) {
-  if (colour_.cmf.size() != 3 * lambda_nodes || colour_.d65.size() != lambda_nodes) {
+  if (colour_.cmf.size() != size_t{3} * lambda_nodes || colour_.d65.size() != lambda_nodes) {
     throw std::invalid_argument("colour data must cover 360 to 830 nm in steps of 1 nm");
   }
 }
@@ -73,7 +75,7 @@ SpectrumRef SpectrumPool::table(std::span<const double> wavelengths, std::span<c
     // An end that drops to zero does so within one cell; the table's node beyond the end is zero.
     return add_function([&](double x) { return interpolate(wavelengths, values, hold, x); }, scale);
   }
-  std::vector<double> samples(static_cast<size_t>(lambda_cells / kFineStep + 0.5) + 1);
+  std::vector<double> samples(kFineCells + 1);
   for (size_t i = 0; i < samples.size(); ++i) {
     samples[i] =
         interpolate(wavelengths, values, hold, static_cast<double>(lambda_min) + static_cast<double>(i) * kFineStep);

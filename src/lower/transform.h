@@ -30,8 +30,8 @@ inline double scale_of(const Matrix& m) { return std::sqrt(m[0] * m[0] + m[4] * 
 
 inline Transform to_transform(const Matrix& m) {
   Transform t{};
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 4; ++c) t.m[r][c] = static_cast<float>(m[static_cast<size_t>(4 * r + c)]);
+  for (size_t r = 0; r < 3; ++r) {
+    for (size_t c = 0; c < 4; ++c) t.m[r][c] = static_cast<float>(m[4 * r + c]);
   }
   return t;
 }

@@ -26,12 +26,12 @@ struct Triangle {
 };
 
 inline Vec3 load_vec3(const float* values, uint32_t index) {
-  const float* v = values + 3u * index;
+  const float* v = values + size_t{3} * index;
   return {v[0], v[1], v[2]};
 }
 
 inline Triangle triangle_of(const SceneView& scene, const Mesh& mesh, uint32_t primitive) {
-  const uint32_t* index = scene.at(mesh.indices) + 3u * primitive;
+  const uint32_t* index = scene.at(mesh.indices) + size_t{3} * primitive;
   const float* positions = scene.at(mesh.positions);
   return {load_vec3(positions, index[0]),
           load_vec3(positions, index[1]),

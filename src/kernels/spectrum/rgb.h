@@ -110,7 +110,8 @@ inline Sigmoid rgb_coefficients(const RgbTable& table, float r, float g, float b
   rgb_lookup::Cell x = rgb_lookup::uniform_cell(next / largest, n);
 
   uint64_t row = static_cast<uint64_t>(n) * 3;
-  const float* corner = table.coefficients + static_cast<uint64_t>((l * n + z.node) * n + y.node) * row + x.node * 3;
+  const float* corner = table.coefficients + static_cast<uint64_t>((l * n + z.node) * n + y.node) * row +
+                        static_cast<uint64_t>(x.node) * 3;
   uint64_t slice = row * static_cast<uint64_t>(n);
   float c[3];
   for (int32_t i = 0; i < 3; ++i) {

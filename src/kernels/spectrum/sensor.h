@@ -56,7 +56,7 @@ inline f32x4 respond(const SceneView& scene, const Observer& observer, const Wav
   }
   f32x4 channels = lanes(0.0f);
   for (int k = 0; k < 4; ++k) {
-    const float* node = scene.response + 4u * wl.cell[k];
+    const float* node = scene.response + size_t{4} * wl.cell[k];
     const f32x4 a = lanes(node[0], node[1], node[2], node[3]);
     const f32x4 b = lanes(node[4], node[5], node[6], node[7]);
     channels = fma(fma(lanes(wl.fraction[k]), b - a, a), lanes(value[k]), channels);
