@@ -52,21 +52,19 @@ def test_mirror_room_in_an_image() -> None:
     assert luminance.mean() == pytest.approx(DEPTH + 1.0, rel=0.2)  # the four wavelengths of a sample are noisy
 
 
-def test_mirror_room_without_limits_ends() -> None:
-    """Without a largest depth the roulette alone ends the paths, and still gives no bias."""
-    description = {"type": "path", "roulette_depth": 1}
-    scene = mirror_room()
-    box = accuray.Scene.from_dict(
+def test_roulette_alone_ends_paths_in_glass_shells() -> None:
+    """Ten nested interfaces, no largest depth, roulette from the first bounce on: no bias in a white furnace."""
+    shells = {f"shell{i}": {"type": "sphere", "radius": 1 - 0.05 * i, "material": "glass"} for i in range(10)}
+    scene = accuray.Scene.from_dict(
         {
             "film": {"width": 16, "height": 16},
-            "integrator": description,
+            "integrator": {"type": "path", "roulette_depth": 1},
             "materials": {"glass": {"type": "dielectric", "ior": 1.5}},
-            "shapes": {f"ball{i}": {"type": "sphere", "radius": 1 - 0.05 * i, "material": "glass"} for i in range(10)},
+            "shapes": shells,
             "lights": {"sky": {"type": "constant"}},
         }
     )
-    assert scene.integrator["max_depth"] == DEPTH
-    image = accuray.render(box, spp=64)
+    image = accuray.render(scene, spp=64)
     assert image.film.dropped_total == 0
     assert image.film.mean()[:, :, 1].mean() == pytest.approx(1.0, rel=0.02)
 
@@ -99,20 +97,21 @@ def small(name: str, **overrides: object) -> accuray.Scene:
     return accuray.load(FOLDER / f"{name}.toml", overrides={"film.width": 80, "film.height": 56, **overrides})
 
 
-SCENES: dict[str, Callable[[], accuray.Scene]] = {
-    "cornell-box": lambda: small("cornell-box"),
-    "closed-box": lambda: small("closed-box"),
-    "large image": lambda: small("spheres", **{"film.width": 1920, "film.height": 1080}),
-    "mirror room": lambda: mirror_room(size=64),
+SCENES: dict[str, tuple[Callable[[], accuray.Scene], float]] = {
+    "cornell-box": (lambda: small("cornell-box"), 0.4),
+    "closed-box": (lambda: small("closed-box"), 0.4),
+    "large image": (lambda: small("spheres", **{"film.width": 1920, "film.height": 1080}), 0.4),
+    "mirror room": (lambda: mirror_room(size=64), 0.4),
+    "one pixel of long paths": (lambda: mirror_room(size=1), 2.5),
 }
+"""Scenes, and after how many seconds they are interrupted: the last one when a pass has grown to 64 samples."""
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_interrupt_ends_a_render_at_once(
-    name: str, interrupt_after: Callable[[float], dict[str, float]]
-) -> None:
-    scene = SCENES[name]()
-    sent = interrupt_after(0.4)
+def test_interrupt_ends_a_render_at_once(name: str, interrupt_after: Callable[[float], dict[str, float]]) -> None:
+    make, seconds = SCENES[name]
+    scene = make()
+    sent = interrupt_after(seconds)
     with pytest.raises(KeyboardInterrupt):
         accuray.render(scene, spp=ENDLESS)
     assert time.perf_counter() - sent["at"] < AT_ONCE

@@ -79,7 +79,7 @@ inline void place_on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit
   s.shading = s.normal;
   s.point = fma(sphere.radius, s.normal, sphere.center);
   const float size = gamma(8) * sphere.radius;
-  s.error = fma(gamma(4), abs(sphere.center), Vec3{size, size, size});
+  s.error = fma(gamma(6), abs(sphere.center), Vec3{size, size, size});
 }
 
 inline void place_on_disk(const Disk& disk, const Ray& ray, const Hit& hit, Surface& s) {

@@ -18,7 +18,7 @@ struct SphereLight {
   float sin2_max(Vec3 reference) const { return radius * radius / length_squared(reference - center); }
   Vec3 error() const {
     const float size = gamma(8) * radius;
-    return fma(gamma(4), abs(center), Vec3{size, size, size});
+    return fma(gamma(6), abs(center), Vec3{size, size, size});
   }
   float area() const { return 4.0f * pi * radius * radius; }
   // 1 - cos of half the angle, without the cancellation of small angles.
