@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,7 +20,6 @@ from accuray.scene import Scene
 class LoadedScene:
     """A scene ready for passes. ``reports`` says, by shape, what was left out of its mesh."""
 
-    scene: Scene
     core: Any
     reports: dict[str, MeshReport]
 
@@ -66,12 +66,20 @@ class LoadedScene:
         )
 
 
+_loaded: dict[int, LoadedScene] = {}
+"""Scenes that were rendered and still live, by ``id``: rendering again, or probing, builds nothing."""
+
+
 def load(scene: Scene) -> LoadedScene:
-    """Lowers a scene and builds its acceleration structure. Raises SceneError."""
+    """Lowers a scene and builds its acceleration structure; the same scene gives the same object. Raises SceneError."""
     from accuray._core import engine
 
-    block, reports = lower(scene)
-    return LoadedScene(scene, engine.LoadedScene(block), reports)
+    key = id(scene)
+    if key not in _loaded:
+        block, reports = lower(scene)
+        _loaded[key] = LoadedScene(engine.LoadedScene(block), reports)
+        weakref.finalize(scene, _loaded.pop, key, None)
+    return _loaded[key]
 
 
 @cache

@@ -67,14 +67,13 @@ def radiance(
         raise ValueError(f"spp is {spp}: it must be at least 1")
     if space not in SPACES:
         raise ValueError(f"space is {space!r}: allowed are {', '.join(SPACES)}")
-    loaded = devices.load(scene)
     threads = thread_count(threads)
     if wavelengths is None:
-        means = _trace(loaded, starts, towards, spp, seed, threads, [])[:, :, :3]
+        means = _trace(scene, starts, towards, spp, seed, threads, [])[:, :, :3]
         if space == "rgb":
             means = means @ np.array(XYZ_TO_RGB).T
     else:
-        means = _spectral(loaded, starts, towards, spp, seed, threads, _checked(wavelengths))
+        means = _spectral(scene, starts, towards, spp, seed, threads, _checked(wavelengths))
     return _pooled(means, spp)
 
 
@@ -105,7 +104,7 @@ def _checked(wavelengths: Sequence[float]) -> list[float]:
 
 
 def _spectral(
-    loaded: devices.LoadedScene,
+    scene: Scene,
     starts: NDArray[np.float32],
     towards: NDArray[np.float32],
     spp: int,
@@ -117,12 +116,12 @@ def _spectral(
     parts = []
     for begin in range(0, len(wavelengths), WAVELENGTHS_AT_ONCE):
         group = wavelengths[begin : begin + WAVELENGTHS_AT_ONCE]
-        parts.append(_trace(loaded, starts, towards, spp, seed, threads, group)[:, :, : len(group)])
+        parts.append(_trace(scene, starts, towards, spp, seed, threads, group)[:, :, : len(group)])
     return np.concatenate(parts, axis=2)
 
 
 def _trace(
-    loaded: devices.LoadedScene,
+    scene: Scene,
     starts: NDArray[np.float32],
     towards: NDArray[np.float32],
     spp: int,
@@ -131,9 +130,8 @@ def _trace(
     wavelengths: list[float],
 ) -> NDArray[np.float64]:
     """Means of the four channels by ray and replicate, (N, R, 4); nan for a replicate without samples."""
-    scene = loaded.scene
     film = Film.empty(len(starts), 1, replicates=scene.render["replicates"], step=scene.film["unit"])
-    core = loaded.ray_pass(film, starts, towards, spp, seed=seed, threads=threads, wavelengths=wavelengths)
+    core = devices.load(scene).ray_pass(film, starts, towards, spp, seed=seed, threads=threads, wavelengths=wavelengths)
     try:
         while not core.wait(POLL_SECONDS):
             pass

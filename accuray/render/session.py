@@ -118,7 +118,7 @@ class _Session:
         progress: Callable[[Progress], None] | None,
     ) -> None:
         loaded = devices.load(scene)
-        self.loaded, self.reports = loaded, loaded.reports
+        self.scene, self.loaded, self.reports = scene, loaded, loaded.reports
         self.first, self.end = samples
         self.seed, self.threads, self.progress = seed, threads, progress
         self.film = Film.empty(
@@ -200,4 +200,4 @@ class _Session:
         return error if np.isfinite(error) else None
 
     def _colour_metadata(self) -> dict[str, Any]:
-        return image_metadata(self.loaded.scene, seed=self.seed, seconds=0.0, rays=0, reports={})
+        return image_metadata(self.scene, seed=self.seed, seconds=0.0, rays=0, reports={})
