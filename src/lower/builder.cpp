@@ -16,6 +16,8 @@ Sphere moved(const Matrix& m, Sphere s) {
   return {moved_point(m, s.center), static_cast<float>(s.radius * scale_of(m))};
 }
 Disk moved(const Matrix& m, Disk d) {
+  if (!(length(d.normal) > 0.0f))
+    throw std::invalid_argument("normal has no direction: allowed is any length but zero");
   return {moved_point(m, d.center), normalize(moved_vector(m, d.normal)), static_cast<float>(d.radius * scale_of(m))};
 }
 
@@ -27,6 +29,12 @@ MeshArrays rectangle_mesh(const Values& values) {
   const auto c = vec_of(values, "corner");
   const auto u = vec_of(values, "edge_u");
   const auto v = vec_of(values, "edge_v");
+  // The sine of their angle, squared.
+  const Vec3 x = to_vec3(u);
+  const Vec3 y = to_vec3(v);
+  const float sine2 = length_squared(cross(x, y)) / (length_squared(x) * length_squared(y));
+  if (!(sine2 > 1e-12f))
+    throw std::invalid_argument("edge_u and edge_v span no area: they must not be zero or parallel");
   MeshArrays mesh;
   for (const auto& [s, t] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
     for (size_t k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(c[k] + s * u[k] + t * v[k]));
@@ -209,8 +217,7 @@ void SceneBuilder::set_camera(std::string_view type, const Values& values, doubl
   const auto up = vec_of(values, "up");
   const auto unit = [](std::array<double, 3> v) {
     const double l = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (!(l > 0.0))
-      throw std::invalid_argument("camera: look_at and up must differ from the viewing position and direction");
+    if (!(l > 0.0)) throw std::invalid_argument("look_at must differ from position, and up from the direction of view");
     return std::array<double, 3>{v[0] / l, v[1] / l, v[2] / l};
   };
   const auto crossed = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
