@@ -49,10 +49,14 @@ def find_llvm() -> Path | None:
 
 
 def environment(peer: str) -> dict[str, str]:
-    """Environment of a driver: ours, for a peer without the Python settings of ours and with LLVM named."""
+    """Environment of a driver: ours, for a peer without the Python settings of ours and with LLVM named.
+
+    Python may keep its compiled modules, as it does for users: without them each start compiles them anew.
+    """
+    ours = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     if peer == "accuray":
-        return dict(os.environ)
-    variables = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
+        return ours
+    variables = {name: value for name, value in ours.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
     if llvm := find_llvm():
         variables[LLVM_VARIABLE] = str(llvm)
     return variables

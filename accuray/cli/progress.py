@@ -56,7 +56,7 @@ class Progress(Protocol):
 
 
 class Display:
-    """A silent display, and what the others share: at most one output per interval, and always the last state."""
+    """What all displays share: at most one output per interval, and always the last state."""
 
     interval = math.inf
 
@@ -145,12 +145,15 @@ class JsonDisplay(Display):
         print(json.dumps(record), file=self.stream, flush=True)
 
 
-def choose_display(style: str, quiet: bool, stream: TextIO) -> Display:
-    """The display for a stream. `style`: "json", or "auto" for what fits the stream and the wish for quiet."""
+def choose_display(style: str, quiet: bool, stream: TextIO) -> Display | None:
+    """The display for a stream. `style`: "json", or "auto" for what fits the stream and the wish for quiet.
+
+    None for silence: an engine without a display need not estimate errors for it.
+    """
     if style == "json":
         return JsonDisplay(stream)
     if quiet:
-        return Display(stream)
+        return None
     return LiveDisplay(stream) if stream.isatty() else LogDisplay(stream)
 
 

@@ -121,7 +121,8 @@ def render(
         with interrupts.interruptible():
             return accuray.render(scene, **arguments, crop=crop, progress=display, on_interrupt="return")
     finally:
-        display.close()
+        if display is not None:
+            display.close()
 
 
 def render_arguments(options: Namespace) -> dict[str, Any]:

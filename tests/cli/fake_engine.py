@@ -76,12 +76,13 @@ class FakeEngine:
         )
 
     def render(self, _scene: object, **arguments: Any) -> FakeImage:
-        """As accuray.render: reports progress twice."""
+        """As accuray.render: reports progress twice, to whom wants it."""
         self.rendered.append(arguments)
         total = arguments["spp"] or 16
         try:
             for done in (total // 2, total):
-                arguments["progress"](progress(done, total))
+                if arguments["progress"] is not None:
+                    arguments["progress"](progress(done, total))
                 self.on_render(arguments)
         except KeyboardInterrupt:
             if arguments["on_interrupt"] != "return":

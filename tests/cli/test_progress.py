@@ -104,7 +104,7 @@ def test_json_writes_null_for_what_is_not_known() -> None:
 def test_display_fits_the_stream() -> None:
     assert type(choose_display("auto", False, Terminal())) is LiveDisplay
     assert type(choose_display("auto", False, io.StringIO())) is LogDisplay
-    assert type(choose_display("auto", True, Terminal())) is Display
+    assert choose_display("auto", True, Terminal()) is None
     assert type(choose_display("json", True, Terminal())) is JsonDisplay
 
 

@@ -110,7 +110,12 @@ NOTHING: dict[str, Table] = {
     "lamp of nan": mesh([[NAN, 0, 0], [0, 0, 0], [1, 0, 0]], [[0, 1, 2]], "lamp"),
     "lamp without area": mesh([[0, 1, 0], [1, 1, 0], [0.5, 1, 0]], [[0, 1, 2]], "lamp"),
     "rectangle without width": {"type": "rectangle", "edge_u": [0, 0, 0], "material": "lamp"},
-    "rectangle of parallel edges": {"type": "rectangle", "edge_u": [0, 1, 0], "edge_v": [0, 0.5, 0], "material": "lamp"},
+    "rectangle of parallel edges": {
+        "type": "rectangle",
+        "edge_u": [0, 1, 0],
+        "edge_v": [0, 0.5, 0],
+        "material": "lamp",
+    },
 }
 
 
@@ -154,7 +159,9 @@ def test_command_line_warns(
 
 @pytest.mark.parametrize("as_shapes", [False, True], ids=["in one mesh", "as shapes"])
 def test_a_thousand_coincident_copies_look_like_one(as_shapes: bool) -> None:
-    copies = {f"copy{i}": mesh(PLATE, FIRST) for i in range(1000)} if as_shapes else {"plate": mesh(PLATE, FIRST * 1000)}
+    copies = (
+        {f"copy{i}": mesh(PLATE, FIRST) for i in range(1000)} if as_shapes else {"plate": mesh(PLATE, FIRST * 1000)}
+    )
     assert same(render(room(True, copies)), render(room(True)))
 
 

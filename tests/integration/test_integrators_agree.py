@@ -21,11 +21,12 @@ import pytest
 from numpy.typing import NDArray
 
 pytest.importorskip("accuray._core", reason="the compiled module is not built")
+from fair import FAIR, Table, fair_scene, shipped
+
 import accuray
 from accuray.film.estimates import pixel_estimates
 from accuray.scene import schema
 from accuray.testing import blocks
-from fair import FAIR, Table, fair_scene, shipped
 
 SEED = int(os.environ.get("ACCURAY_TEST_SEED", "0"))
 BLOCK = 8

@@ -262,7 +262,7 @@ SPHERE_PLACES: dict[str, tuple[float, float]] = {
     "near": (1.001, 0.0),
     "touching": (1.00001, 0.0),
     "inside": (0.3, 0.5),
-    "inside-near": (0.9995, 0.0),
+    "inside-near": (0.85, 0.0),
 }
 
 

@@ -80,7 +80,7 @@ class Bsdf:
         self._core, self._material, self._wavelengths = core, material, list(wavelengths)
 
     def sample(self, wo: FloatArray, u: FloatArray) -> Samples:
-        """u (N, 3): two numbers for the direction and one for the lobe."""
+        """Samples for `u` (N, 3): two numbers for the direction and one for the lobe."""
         from accuray._core import probe
 
         s = probe.bsdf_sample(self._core, self._material, self._wavelengths, single(wo), single(u))
@@ -91,7 +91,7 @@ class Bsdf:
         return self.sample(rows(wo, len(u)), u)
 
     def eval(self, wo: FloatArray, wi: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """f |cos theta_i| (N, 4) and the density of wi (N,)."""
+        """Values f |cos theta_i| (N, 4) and the density of wi (N,)."""
         from accuray._core import probe
 
         value, pdf = probe.bsdf_eval(self._core, self._material, self._wavelengths, single(wo), single(wi))

@@ -49,7 +49,9 @@ def test_negative_values_are_rounded_without_bias_too() -> None:
 def test_keys_and_channels_are_dithered_independently() -> None:
     """Products of the roundings of two channels, and of two keys, average to the product of their means."""
     sums = np.array([probe.quantized_sums([0.5] * 4, 1.0, key, 1) for key in range(SEED, SEED + 40_000)]) - 0.5
-    pairs = [sums[:, a] * sums[:, b] for a in range(4) for b in range(a)] + [sums[1:, c] * sums[:-1, c] for c in range(4)]
+    pairs = [sums[:, a] * sums[:, b] for a in range(4) for b in range(a)] + [
+        sums[1:, c] * sums[:-1, c] for c in range(4)
+    ]
     z = [4.0 * pair.mean() * np.sqrt(len(pair)) for pair in pairs]
     assert np.abs(z).max() < 4.5, z
 
@@ -76,7 +78,12 @@ def test_a_million_times_white_keeps_seven_digits_over_1e5_samples() -> None:
 def test_sums_up_to_the_last_bit() -> None:
     """Two values of 2^61 and one of 2^62 - 2^38 are held exactly; what leaves 64 bits is refused."""
     large = float(np.nextafter(np.float32(2.0**62), np.float32(0.0)))
-    assert list(probe.quantized_sums([large, -large, 2.0**61, 0.0], 1.0, SEED, 2)) == [2 * int(large), -2 * int(large), 2**62, 0]
+    assert list(probe.quantized_sums([large, -large, 2.0**61, 0.0], 1.0, SEED, 2)) == [
+        2 * int(large),
+        -2 * int(large),
+        2**62,
+        0,
+    ]
     for value in ([large, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -large]):
         with pytest.raises(OverflowError):
             probe.quantized_sums(value, 1.0, SEED, 3)

@@ -17,8 +17,10 @@ from tests.kernels.support import SEED, FloatArray, load, single, uniform
 CASES = cases()
 BY_NAME = {case.name: case for case in CASES}
 VISITS = [(case, name) for case in CASES for name in places(case.geometry)]
-#: The chi-square tests of one run: every fifth visit, the others with other seeds.
-CHOSEN = [pytest.param(*visit, id=f"{visit[0].name}-{visit[1]}") for i, visit in enumerate(VISITS) if (i + SEED) % 5 == 0]
+#: The chi-square tests of one run: every eighth visit, the others with other seeds.
+CHOSEN = [
+    pytest.param(*visit, id=f"{visit[0].name}-{visit[1]}") for i, visit in enumerate(VISITS) if (i + SEED) % 8 == 0
+]
 each_case = pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 
 
@@ -136,7 +138,9 @@ def test_a_ray_that_meets_the_light_finds_the_density_of_the_sample(case: Case) 
         wrong = np.abs(found[met] / drawn.pdf[met] - 1.0)
         missed = 1.0 - met.sum() / seen.sum()
         bad = missed > 0.01 or np.quantile(wrong, 0.99) > 1e-3 or wrong.max() > 0.05
-        faults[name] = f"{missed:.2%} missed, 99 % within {np.quantile(wrong, 0.99):.2g}, {wrong.max():.2g}" if bad else ""
+        faults[name] = (
+            f"{missed:.2%} missed, 99 % within {np.quantile(wrong, 0.99):.2g}, {wrong.max():.2g}" if bad else ""
+        )
     passed(faults)
 
 
@@ -205,6 +209,7 @@ def test_the_environment_is_uniform() -> None:
         lambda u: (draw(core, reference, u).wi, np.ones(len(u))),
         lambda wi: density(core, reference, wi),
         samples=1_000_000,
+        resolution=(40, 80),
         seed=SEED,
     )
     assert result, result.reason
