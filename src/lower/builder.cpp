@@ -172,12 +172,12 @@ uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecor
       const auto* p = reinterpret_cast<const float*>(positions.data);
       const auto* i = reinterpret_cast<const uint32_t*>(indices.data);
       world.positions.assign(p, p + mesh.positions.count);
-      transform_array<true>(matrix, world.positions);
+      world.indices.assign(i, i + mesh.indices.count);
+      move_mesh(matrix, world);
       for (size_t k = 0; k + 2 < world.positions.size(); k += 3) {
         grow_bounds({world.positions[k], world.positions[k + 1], world.positions[k + 2]});
       }
       if (made_of.emission.index != none) {
-        world.indices.assign(i, i + mesh.indices.count);
         lights = add_mesh_lights(world, made_of);
       }
     } else if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {

@@ -1,6 +1,7 @@
 #include "lower/lights.h"
 
 #include <cmath>
+#include <optional>
 
 namespace accuray {
 
@@ -38,6 +39,20 @@ QuadLight quad_light(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return quad;
 }
 
+// The rectangle that two triangles, six indices, form: (a, b, c), (a, c, d) as a polygon is cut, or mirrored
+// (a, c, b), (a, d, c), whose front side is that of a, d, c, b.
+std::optional<QuadLight> rectangle_of(std::span<const float> positions, const uint32_t* i) {
+  const bool cut = i[3] == i[0] && i[4] == i[2];
+  const bool mirrored = i[3] == i[0] && i[5] == i[1];
+  if (!cut && !mirrored) return std::nullopt;
+  const Vec3 a = vertex(positions, i[0]);
+  const Vec3 b = vertex(positions, cut ? i[1] : i[4]);
+  const Vec3 c = vertex(positions, cut ? i[2] : i[1]);
+  const Vec3 d = vertex(positions, cut ? i[5] : i[2]);
+  if (!is_rectangle(a, b, c, d)) return std::nullopt;
+  return quad_light(a, b, c, d);
+}
+
 }  // namespace
 
 std::vector<uint32_t> LightTable::add_mesh(std::span<const float> positions, std::span<const uint32_t> indices,
@@ -49,10 +64,9 @@ std::vector<uint32_t> LightTable::add_mesh(std::span<const float> positions, std
     const Vec3 a = vertex(positions, i[0]);
     const Vec3 b = vertex(positions, i[1]);
     const Vec3 c = vertex(positions, i[2]);
-    if (t + 1 < triangles && i[3] == i[0] && i[4] == i[2]) {
-      const Vec3 d = vertex(positions, i[5]);
-      if (is_rectangle(a, b, c, d)) {
-        light_of[t] = light_of[t + 1] = add(quad_light(a, b, c, d), emission, both_sides);
+    if (t + 1 < triangles) {
+      if (const std::optional<QuadLight> quad = rectangle_of(positions, i)) {
+        light_of[t] = light_of[t + 1] = add(*quad, emission, both_sides);
         ++t;
         continue;
       }

@@ -109,13 +109,6 @@ NOTHING: dict[str, Table] = {
     "only a line": mesh([[0, 0, 0], [1, 1, 1], [2, 2, 2]], [[0, 1, 2]]),
     "lamp of nan": mesh([[NAN, 0, 0], [0, 0, 0], [1, 0, 0]], [[0, 1, 2]], "lamp"),
     "lamp without area": mesh([[0, 1, 0], [1, 1, 0], [0.5, 1, 0]], [[0, 1, 2]], "lamp"),
-    "rectangle without width": {"type": "rectangle", "edge_u": [0, 0, 0], "material": "lamp"},
-    "rectangle of parallel edges": {
-        "type": "rectangle",
-        "edge_u": [0, 1, 0],
-        "edge_v": [0, 0.5, 0],
-        "material": "lamp",
-    },
 }
 
 
@@ -134,6 +127,21 @@ def test_bad_triangles_are_left_out(name: str, ballast: bool) -> None:
 @pytest.mark.parametrize("name", NOTHING)
 def test_shapes_without_area_change_nothing(name: str, ballast: bool) -> None:
     assert same(render(room(ballast, {"nothing": NOTHING[name]})), render(room(ballast)))
+
+
+REFUSED: dict[str, tuple[Table, str]] = {
+    "rectangle without width": ({"type": "rectangle", "edge_u": [0, 0, 0]}, "no area"),
+    "rectangle of parallel edges": ({"type": "rectangle", "edge_u": [0, 1, 0], "edge_v": [0, 0.5, 0]}, "no area"),
+    "disk without a direction": ({"type": "disk", "normal": [0, 0, 0]}, "no direction"),
+}
+"""What is described by few numbers, so that a mistake in one of them is worth an error, and a word of the error."""
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_single_shapes_without_area_are_errors(name: str) -> None:
+    shape, word = REFUSED[name]
+    with pytest.raises(accuray.SceneError, match=rf"shapes\.bad.*{word}"):
+        accuray.render(room(False, {"bad": {"material": "lamp", **shape}}), spp=1)
 
 
 @pytest.mark.parametrize(

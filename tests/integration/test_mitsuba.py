@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+
 from benchmarks import peers, scenes
 from benchmarks.settings import Contender
-from numpy.typing import NDArray
 
 pytest.importorskip("accuray._core", reason="the compiled module is not built")
 import accuray

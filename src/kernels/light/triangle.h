@@ -36,6 +36,9 @@ inline Vec3 sample_spherical_triangle(Vec3 a, Vec3 b, Vec3 c, float area, Vec2 u
   return fma(cos_theta, b, perpendicular(cp, b) * sin_theta);
 }
 
+// Arvo's inversion loses digits sooner than the rectangle's, most of all for thin triangles.
+constexpr float least_spherical_triangle = 0.02f;
+
 struct TriangleLight {
   Vec3 p0, p1, p2;
   Vec3 normal;
@@ -59,7 +62,7 @@ struct TriangleLight {
     seen.b = normalize(p1 - reference);
     seen.c = normalize(p2 - reference);
     const float w = spherical_triangle_area(seen.a, seen.b, seen.c);
-    seen.solid_angle = w > least_spherical && w < most_spherical ? w : 0.0f;
+    seen.solid_angle = w > least_spherical_triangle && w < most_spherical ? w : 0.0f;
     return seen;
   }
 
