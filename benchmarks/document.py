@@ -3,6 +3,7 @@
 ``python -m benchmarks.document [out/bench.json]``
 """
 
+import argparse
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -118,8 +119,9 @@ TABLES: dict[str, tuple[str, dict[str, str]]] = {
 
 def main() -> int:
     """Write the page's results from the JSON file of a run."""
-    source = Path(sys.argv[1] if len(sys.argv) > 1 else "out/bench.json")
-    result = json.loads(source.read_text())
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.document", description=main.__doc__)
+    parser.add_argument("file", type=Path, nargs="?", default=Path("out/bench.json"), help="default: out/bench.json")
+    result = json.loads(parser.parse_args().file.read_text())
     PAGE.write_text(update(PAGE.read_text(encoding="utf-8"), results(result)), encoding="utf-8")
     print(PAGE)
     return 0

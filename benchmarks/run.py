@@ -127,7 +127,8 @@ def _memory(options: speed.Options, _arguments: argparse.Namespace) -> Any:
 
 
 def _threads(options: speed.Options, _arguments: argparse.Namespace) -> Any:
-    rows = [row for peer in options.wanted if peer == "accuray" for row in threads.measure(options.work, peer)]
+    rounds = min(settings.THREAD_ROUNDS, options.repeats)
+    rows = threads.measure(options.work, "accuray", rounds, options.spp) if "accuray" in options.wanted else []
     print(report.table(rows, threads.COLUMNS))
     return rows
 

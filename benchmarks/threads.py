@@ -23,13 +23,15 @@ COLUMNS = {
 }
 
 
-def measure(work: Path, peer: str = "accuray", rounds: int = settings.THREAD_ROUNDS) -> list[dict[str, Any]]:
+def measure(
+    work: Path, peer: str = "accuray", rounds: int = settings.THREAD_ROUNDS, spp: int | None = None
+) -> list[dict[str, Any]]:
     """Median seconds with one thread and with two, taken in turn so that other load meets both alike."""
     contender = next(one for one in settings.SPEED_CONTENDERS if one.peer == peer)
     found = []
     for name in ("cornell", "million"):
         folder = scenes.write(scenes.build(name), work / f"{name}-threads", settings.SIZE)
-        task = {"kind": "time", "spp": settings.SPP[peer], "seed": settings.MEASURED_SEED, "repeats": 2}
+        task = {"kind": "time", "spp": spp or settings.SPP[peer], "seed": settings.MEASURED_SEED, "repeats": 2}
         seconds: dict[int, list[float]] = {1: [], 2: []}
         row: dict[str, Any] = {"renderer": contender.name, "scene": name, "wanted": SPEED_UP_WANTED}
         for threads in (1, 2) * rounds:

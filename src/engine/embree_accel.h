@@ -1,5 +1,5 @@
-// The intersector of this machine: Embree over the lowered scene, whose vertex and index bytes it reads in place. Scenes
-// of a few dozen triangles are tested without it: see packed_accel.h.
+// The intersector of this machine: Embree over the lowered scene, whose vertex and index bytes it reads in place.
+// Scenes of a few dozen triangles are tested without it: see packed_accel.h.
 #pragma once
 
 #include <memory>
@@ -69,6 +69,7 @@ class EmbreeAccel {
   Hit closest(const Ray& ray) const {
     ++rays_;
     if (packed_ != nullptr) return packed_->closest(ray);
+    if (!is_traceable(ray)) return Hit{};
     alignas(16) RTCRayHit rh;
     embree::prepare(rh);
     load(rh.ray, ray);
@@ -85,6 +86,7 @@ class EmbreeAccel {
   float transmittance(const Ray& ray) const {
     ++rays_;
     if (packed_ != nullptr) return packed_->occluded(ray) ? 0.0f : 1.0f;
+    if (!is_traceable(ray)) return 0.0f;
     alignas(16) RTCRay r;
     r.tnear = 0.0f;
     r.mask = 0xffffffffu;
@@ -98,6 +100,13 @@ class EmbreeAccel {
   uint64_t rays() const { return rays_; }
 
  private:
+  // Embree must not be given coordinates beyond its limit of 1.8e18, nor NaN: some builds of it abort.
+  static bool is_traceable(const Ray& ray) {
+    constexpr float limit = 1e18f;
+    const Vec3 o = abs(ray.origin);
+    const Vec3 d = abs(ray.direction);
+    return (o.x < limit) & (o.y < limit) & (o.z < limit) & (d.x < limit) & (d.y < limit) & (d.z < limit);
+  }
   static void load(RTCRay& target, const Ray& ray) {
     target.org_x = ray.origin.x;
     target.org_y = ray.origin.y;

@@ -149,6 +149,13 @@ uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, co
 void SceneBuilder::add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
                                 std::optional<uint32_t> material) {
   const Matrix matrix = transform.value_or(identity_matrix);
+  const Matrix back = inverse(matrix);
+  for (size_t i = 0; i < matrix.size(); ++i) {
+    // Rays are carried into the instance's own space, where Embree's limit of 1.8e18 holds too.
+    if (!(std::fabs(matrix[i]) < 1e15 && std::fabs(back[i]) < 1e15)) {
+      throw std::invalid_argument("transform moves or scales by more than 1e15 or less than 1e-15");
+    }
+  }
   InstanceRecord instance{to_transform(matrix),   to_transform(inverse(matrix)), first, count, none,
                           material.value_or(none)};
   instance.lights = instance_lights(matrix, instance, material);

@@ -10,6 +10,7 @@ replaced, as this table says; a command that no row matches fails the test.
 | `accuray render ...` | the same with `-q -w 16 --height 12`, and 4 samples unless it names some itself |
 | `accuray verify ...` | `accuray verify ... --help`: the flags exist |
 | other `accuray ...` | as it is |
+| `python -m benchmarks...` | the same with `--help` in place of other arguments, in the repository |
 | `python examples/...` | the small AccuRay of `small.py` |
 | `python -m pytest ...` | the same with `--collect-only` |
 | `ruff ...`, `clang-format ...` | the tool with `--version`, if it is installed |
@@ -66,6 +67,8 @@ def substitute(command: str) -> tuple[list[str], Path | None] | None:
         return [str(BIN / "accuray"), *small_arguments(words[1:])], None
     if program in ("python", "python3") and words[1] == "-m" and words[2] == "pytest":
         return [sys.executable, *words[1:], "--collect-only", "-q"], REPOSITORY
+    if program in ("python", "python3") and words[1] == "-m" and words[2].startswith("benchmarks"):
+        return [sys.executable, "-m", words[2], "--help"], REPOSITORY
     if program in ("python", "python3") and words[1].startswith("examples/"):
         return [sys.executable, str(SMALL), words[1]], None
     if program in TOOLS:

@@ -1,9 +1,10 @@
-"""Every kind of light with its exact geometry, from plain, moved, mirrored and instanced shapes, and places to see it from."""
+"""Every kind of light with its exact geometry, from plain, moved, mirrored and instanced shapes; places to see it."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ def rounded(values: FloatArray) -> FloatArray:
 
 def tangents(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Two unit vectors perpendicular to the normal and to each other."""
-    x = unit(*np.cross(normal, unit(*np.roll(normal, 1) + [0.3, 0.1, 0.2])))
+    x = unit(*np.cross(normal, unit(*np.roll(normal, 1) + np.array([0.3, 0.1, 0.2]))))
     return x, np.asarray(np.cross(normal, x))
 
 
@@ -54,7 +55,7 @@ class Polygon:
         """A fan of triangles, each by Van Oosterom and Strackee 1983, its numerator from the unscaled volume."""
         v = self.vertices - reference
         total = 0.0
-        for b, c in zip(v[1:-1], v[2:], strict=True):
+        for b, c in pairwise(v[1:]):
             a = v[0]
             la, lb, lc = (float(np.linalg.norm(x)) for x in (a, b, c))
             volume = float(np.dot(a, np.cross(b - a, c - a)))
@@ -208,7 +209,7 @@ def _shapes() -> list[tuple[str, str, Description, Geometry]]:
     octant = np.eye(3)
     thin = rounded(np.array([[0, 0, 0], [2, 0, 0], [2, 0.05, 0]]))
     corner, u, v = rounded(np.array([[-0.5, 1, 0.25], [1.0, 0, 0], [0, 0, 0.4]]))
-    slanted = v + [0.5, 0.0, 0.0]
+    slanted = v + np.array([0.5, 0.0, 0.0])
     square = np.array([corner, corner + u, corner + u + v, corner + v])
     skew = np.array([corner, corner + u, corner + u + slanted, corner + slanted])
     rectangle = {"type": "rectangle", "corner": list(corner), "edge_u": list(u), "edge_v": list(v)}

@@ -71,7 +71,7 @@ def hero_energy(bsdf: Bsdf, wo: FloatArray, u: FloatArray) -> FloatArray:
 
 
 def sampling_cases() -> list[Any]:
-    """Type, set and direction: the first set from everywhere with 10^6 samples, one more, chosen by the seed, with less."""
+    """Type, set, direction: the first set from everywhere with 10^6 samples, one more, by the seed, with less."""
     cases = []
     for name in TABLES:
         if claims(name, "exact_pdf"):
@@ -198,7 +198,8 @@ LOBE_STEPS = 4096
 
 def delta_lobes(bsdf: Bsdf, wo: FloatArray) -> dict[str, tuple[FloatArray, FloatArray, float, float]]:
     """The hero's share of light in each delta lobe: wi, energy (4,), 1 / chance, eta_scale; the lobes are listed by
-    even steps of the number that chooses among them."""
+    even steps of the number that chooses among them.
+    """
     u = np.full((LOBE_STEPS, 3), 0.5)
     u[:, 2] = (np.arange(LOBE_STEPS) + 0.5) / LOBE_STEPS
     s = bsdf.sample_one(wo, u)
@@ -214,7 +215,8 @@ def delta_lobes(bsdf: Bsdf, wo: FloatArray) -> dict[str, tuple[FloatArray, Float
 @each_type
 def test_delta_lobes_go_both_ways_alike(name: str) -> None:
     """Reflected light returns with the same share. Refracted light returns along its own path with the same share of
-    energy; radiance is scaled by (n_o / n_i)^2 on the way, which is (sin theta_i / sin theta_o)^2 by Snell's law."""
+    energy; radiance is scaled by (n_o / n_i)^2 on the way, which is (sin theta_i / sin theta_o)^2 by Snell's law.
+    """
     if not claims(name, "reciprocal"):
         pytest.skip("not claimed")
     sets = materials(name)

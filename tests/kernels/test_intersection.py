@@ -1,0 +1,379 @@
+"""Rays and surfaces: Embree against the exhaustive intersector, watertight meshes, and no surface that meets itself."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.long  # some rows are not reached yet: see docs/verification.md
+from numpy.typing import NDArray
+
+import accuray
+from accuray._core import probe
+from accuray.testing import random_directions
+from tests.kernels.light_cases import motion
+from tests.kernels.support import SEED, FloatArray, load, rows, single
+
+GREY = {"grey": {"type": "diffuse", "reflectance": 0.5}}
+NONE = 0xFFFFFFFF
+Mesh = tuple[FloatArray, NDArray[np.int64]]
+Hits = dict[str, Any]
+
+
+def closest(core: Any, origins: FloatArray, directions: FloatArray, exhaustive: bool = False) -> Hits:
+    return dict(probe.closest(core, single(origins), single(directions), exhaustive))
+
+
+def icosphere(levels: int) -> Mesh:
+    """A closed mesh of 20 * 4^levels triangles on the unit sphere, wound counter-clockwise from outside."""
+    g = (1.0 + 5.0**0.5) / 2.0
+    corners = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g)]
+    corners += [(0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)]
+    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6)]
+    faces += [(7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10)]
+    faces += [(8, 6, 7), (9, 8, 1)]
+    vertices, triangles = np.array(corners, dtype=np.float64), np.array(faces)
+    for _ in range(levels):
+        edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+        unique, number = np.unique(edges, axis=0, return_inverse=True)
+        middles = len(vertices) + number.reshape(3, -1)
+        vertices = np.concatenate([vertices, vertices[unique].sum(axis=1)])
+        vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
+        a, b, c = triangles.T
+        ab, bc, ca = middles
+        triangles = np.concatenate([np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    return vertices / np.linalg.norm(vertices, axis=1, keepdims=True), triangles
+
+
+def bumpy(levels: int, seed: int) -> Mesh:
+    """A closed star-shaped mesh whose vertices lie at random distances: slanted triangles, sharp edges."""
+    vertices, triangles = icosphere(levels)
+    return vertices * np.random.default_rng(seed).uniform(0.7, 1.3, (len(vertices), 1)), triangles
+
+
+def mesh_shape(mesh: Mesh) -> dict[str, Any]:
+    vertices, triangles = mesh
+    return {"type": "mesh", "positions": vertices.astype(np.float32), "faces": triangles.tolist(), "material": "grey"}
+
+
+# --- Embree against the exhaustive intersector --------------------------------------------------------------------
+
+
+def random_scene(seed: int) -> dict[str, Any]:
+    """Meshes, spheres and disks, as themselves and as instances of a group, all over a cube of half width 4."""
+    rng = np.random.default_rng(seed)
+    shapes: dict[str, Any] = {"near": mesh_shape(bumpy(1, seed))}
+
+    def vec(scale: float) -> list[float]:
+        return [float(x) for x in rng.uniform(-scale, scale, 3)]
+
+    for i in range(4):
+        shapes[f"ball{i}"] = {
+            "type": "sphere",
+            "center": vec(4),
+            "radius": float(rng.uniform(0.1, 1)),
+            "material": "grey",
+        }
+        shapes[f"disk{i}"] = {
+            "type": "disk",
+            "center": vec(4),
+            "normal": vec(1),
+            "radius": float(rng.uniform(0.2, 1.5)),
+            "material": "grey",
+        }
+        shapes[f"quad{i}"] = {
+            "type": "rectangle",
+            "corner": vec(4),
+            "edge_u": vec(2),
+            "edge_v": vec(2),
+            "material": "grey",
+        }
+    shapes["part"] = {**mesh_shape(bumpy(0, seed + 1)), "prototype": True}
+    shapes["stone"] = {"type": "sphere", "center": [1.2, 0, 0], "radius": 0.4, "material": "grey", "prototype": True}
+    shapes["lid"] = {"type": "disk", "center": [0, 1.3, 0], "radius": 0.5, "material": "grey", "prototype": True}
+    for i, scale in enumerate((0.7, -0.5, 1.3)):
+        matrix = motion(scale)
+        matrix[:3, 3] = rng.uniform(-3, 3, 3)
+        transform = {"matrix": [float(x) for x in matrix.ravel()]}
+        shapes[f"copy{i}"] = {"type": "instance", "of": ["part", "stone", "lid"], "transform": transform}
+    return {"materials": GREY, "shapes": shapes}
+
+
+@pytest.mark.parametrize("seed", range(SEED * 3, SEED * 3 + 3))
+def test_embree_finds_what_the_exhaustive_search_finds(seed: int) -> None:
+    core = load(random_scene(seed))
+    count = 20_000
+    origins = np.random.default_rng((seed, 1)).uniform(-5, 5, (count, 3))
+    directions = random_directions(count, seed)
+    fast, slow = closest(core, origins, directions), closest(core, origins, directions, exhaustive=True)
+    hit_fast, hit_slow = fast["geometry"] != NONE, slow["geometry"] != NONE
+    assert 0.3 < hit_slow.mean() < 0.9, "the scene tests nothing"
+    both = hit_fast & hit_slow
+    assert np.count_nonzero(hit_fast != hit_slow) <= 1, (
+        "rays that one finds and the other does not, beyond rounding at a rim"
+    )
+    different = both & (np.abs(fast["t"] - slow["t"]) > 2e-6 * (8.0 + slow["t"]))
+    assert np.count_nonzero(different) <= 1
+    same = both & ~different
+    for key in ("geometry", "instance", "primitive"):
+        assert np.count_nonzero(fast[key][same] != slow[key][same]) <= 2, key
+    assert np.abs(fast["normal"] - slow["normal"])[same].max(axis=1).mean() < 1e-4
+    assert np.linalg.norm(fast["point"] - slow["point"], axis=1)[same].max() < 1e-4
+
+
+def test_instances_and_moved_shapes_are_met_alike() -> None:
+    """The same bodies, once under a transform of their own and once as an instance of a group."""
+    for scale in (1.7, -0.6):
+        transform = {"matrix": [float(x) for x in motion(scale).ravel()]}
+        ball = {"type": "sphere", "center": [0.2, 0.1, 0], "radius": 0.8, "material": "grey"}
+        disk = {"type": "disk", "center": [0, 1.4, 0], "normal": [1, 2, 1], "radius": 0.9, "material": "grey"}
+        parts = {"a": mesh_shape(bumpy(1, 5)), "b": ball, "c": disk}
+        moved = load(
+            {"materials": GREY, "shapes": {name: {**part, "transform": transform} for name, part in parts.items()}}
+        )
+        group = {name: {**part, "prototype": True} for name, part in parts.items()}
+        copy = {"type": "instance", "of": list(parts), "transform": transform}
+        instanced = load({"materials": GREY, "shapes": {**group, "copy": copy}})
+        center = motion(scale)[:3, 3]
+        directions = random_directions(5000, SEED)
+        origins = center + 6.0 * random_directions(5000, SEED + 1)
+        directions = center + np.random.default_rng(SEED).uniform(-1, 1, (5000, 3)) - origins
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        a, b = closest(moved, origins, directions), closest(instanced, origins, directions)
+        met = (a["geometry"] != NONE) & (b["geometry"] != NONE)
+        assert met.mean() > 0.5
+        assert np.count_nonzero((a["geometry"] != NONE) != (b["geometry"] != NONE)) <= 2
+        near = met & (np.abs(a["t"] - b["t"]) < 1e-4)
+        assert np.count_nonzero(met & ~near) <= 2
+        assert ((a["normal"] * b["normal"]).sum(axis=1)[near] > 0.999).mean() > 0.999, "front sides stay front sides"
+
+
+# --- Watertight meshes --------------------------------------------------------------------------------------------
+
+
+def through_vertices_and_edges(mesh: Mesh, origin: FloatArray, seed: int) -> FloatArray:
+    """Directions from the origin to every vertex, to points of every edge, and to anywhere."""
+    vertices, triangles = single(mesh[0]).astype(np.float64), mesh[1]
+    rng = np.random.default_rng(seed)
+    edges = np.unique(np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]]]), axis=1), axis=0)
+    share = rng.random((8, len(edges), 1))
+    on_edges = (vertices[edges[:, 0]] * share + vertices[edges[:, 1]] * (1.0 - share)).reshape(-1, 3)
+    middles = 0.5 * (vertices[edges[:, 0]] + vertices[edges[:, 1]])
+    targets = np.concatenate([vertices, middles, on_edges]) - origin
+    return np.concatenate([targets / np.linalg.norm(targets, axis=1, keepdims=True), random_directions(100_000, seed)])
+
+
+@pytest.mark.parametrize("exhaustive", [False, True], ids=["embree", "exhaustive"])
+def test_no_ray_leaves_a_closed_mesh(exhaustive: bool) -> None:
+    mesh = bumpy(2 if exhaustive else 5, SEED)
+    core = load({"materials": GREY, "shapes": {"rock": mesh_shape(mesh)}})
+    for origin in (np.zeros(3), np.array([0.25, -0.3, 0.2])):
+        directions = through_vertices_and_edges(mesh, origin, SEED)
+        directions = directions[:: 8 if exhaustive else 1]
+        hits = closest(core, rows(origin, len(directions)), directions, exhaustive)
+        assert np.count_nonzero(hits["geometry"] == NONE) == 0
+
+
+@pytest.mark.parametrize("exhaustive", [False, True], ids=["embree", "exhaustive"])
+def test_no_ray_passes_between_the_triangles_of_a_grid(exhaustive: bool) -> None:
+    """Rays straight at the vertices and along the edges of a plane of triangles, where an edge seen exactly is zero."""
+    n = 12
+    x, y = np.meshgrid(np.arange(n + 1.0), np.arange(n + 1.0), indexing="ij")
+    vertices = np.stack([x.ravel(), y.ravel(), np.zeros((n + 1) ** 2)], axis=1)
+    cell = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    triangles = np.concatenate(
+        [np.stack([cell, cell + n + 1, cell + n + 2], 1), np.stack([cell, cell + n + 2, cell + 1], 1)]
+    )
+    core = load({"materials": GREY, "shapes": {"grid": mesh_shape((vertices, triangles))}})
+    i, j = np.meshgrid(np.arange(1, 4 * n) / 4.0, np.arange(1, 4 * n) / 4.0, indexing="ij")
+    origins = np.stack([i.ravel(), j.ravel(), np.full(i.size, 3.0)], axis=1)
+    for direction in ([0, 0, -1], [0.25, 0, -1], [0.25, 0.25, -1], [-0.5, 0.125, -1]):
+        hits = closest(core, origins, rows(np.array(direction, dtype=float), len(origins)), exhaustive)
+        at = origins + 3.0 * np.array(direction)
+        inside = (at[:, :2] > 0.0).all(axis=1) & (at[:, :2] < n).all(axis=1)
+        assert np.count_nonzero(hits["geometry"][inside] == NONE) == 0, direction
+
+
+def test_a_mesh_far_from_the_origin_is_nearly_watertight() -> None:
+    """At 1.5e5 radii the vertices themselves are rounded; two misses in 10^5 are allowed."""
+    vertices, triangles = bumpy(4, SEED)
+    offset = np.array([1.5e5, -1.5e5, 1.5e5])
+    mesh = (single(vertices + offset).astype(np.float64), triangles)
+    core = load({"materials": GREY, "shapes": {"rock": mesh_shape(mesh)}})
+    directions = through_vertices_and_edges(mesh, offset, SEED)
+    hits = closest(core, rows(offset, len(directions)), directions)
+    assert np.count_nonzero(hits["geometry"] == NONE) <= 2e-5 * len(directions)
+
+
+# --- No surface meets itself --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Body:
+    """A convex body of size 1 around the origin; `closed` if it has an inside."""
+
+    name: str
+    closed: bool
+
+    def shape(self, scale: float, center: FloatArray) -> dict[str, Any]:
+        if self.name == "sphere":
+            return {"type": "sphere", "center": list(center), "radius": scale, "material": "grey"}
+        if self.name == "disk":
+            return {"type": "disk", "center": list(center), "normal": [1, 2, -2], "radius": scale, "material": "grey"}
+        mesh = icosphere(1) if self.name == "icosphere" else (BOX * [1.0, 0.6, 0.8] @ motion(1.0)[:3, :3].T, BOX_FACES)
+        return mesh_shape((mesh[0] * scale + center, mesh[1]))
+
+
+BOX = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+BOX_FACES = np.array(
+    [
+        *([0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]),
+        *([2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]),
+    ]
+)
+BODIES = [Body("sphere", True), Body("icosphere", True), Body("box", True), Body("disk", False)]
+SCALES = [1e-4, 1e-2, 1.0, 1e3, 1e6]
+OFFSETS = [0.0, 1.0, 30.0, 1e3, 1e6]
+
+
+def facing(normals: FloatArray, seed: int, grazing: bool) -> FloatArray:
+    """Directions above each surface, half of them within a thousandth of a radian of it if `grazing`."""
+    d = random_directions(len(normals), seed)
+    if grazing:
+        height = (np.random.default_rng(seed).random(len(normals)) * 1e-3)[:, None]
+        flat = d - (d * normals).sum(axis=1)[:, None] * normals
+        flat /= np.linalg.norm(flat, axis=1, keepdims=True)
+        low = flat + height * normals
+        d[::2] = (low / np.linalg.norm(low, axis=1, keepdims=True))[::2]
+    below = (d * normals).sum(axis=1) < 0.0
+    d[below] -= 2.0 * (d * normals).sum(axis=1)[below][:, None] * normals[below]
+    return d
+
+
+@pytest.mark.parametrize("instanced", [False, True], ids=["plain", "instanced"])
+@pytest.mark.parametrize("body", BODIES, ids=lambda b: b.name)
+def test_no_surface_shadows_itself_and_none_leaks(body: Body, instanced: bool) -> None:
+    """Rays off a convex body to its outside leave the scene; those to its inside do not. Scales and places as B5.31."""
+    count = 12_000
+    tried, acne, leaks = 0, {}, {}
+    for scale in SCALES:
+        for offset in OFFSETS:
+            center = single(offset * scale * np.array([0.6, -0.48, 0.64])).astype(np.float64)
+            if instanced:
+                shapes = {
+                    "part": {**body.shape(1.0, np.zeros(3)), "prototype": True},
+                    "copy": {
+                        "type": "instance",
+                        "of": "part",
+                        "transform": [{"scale": scale}, {"translate": list(center)}],
+                    },
+                }
+            else:
+                shapes = {"body": body.shape(scale, center)}
+            core = load({"materials": GREY, "shapes": shapes})
+            start = center + 3.0 * scale * random_directions(count, SEED)
+            toward = center + scale * np.random.default_rng(SEED).uniform(-0.5, 0.5, (count, 3)) - start
+            hits = closest(core, start, toward / np.linalg.norm(toward, axis=1, keepdims=True))
+            met = hits["geometry"] != NONE
+            points, errors, normals = (np.ascontiguousarray(hits[key][met]) for key in ("point", "error", "normal"))
+            n = normals.astype(np.float64)
+            outward = facing(n, SEED + 2, grazing=True)
+            sides = [outward] if body.closed else [outward, -outward]
+            for directions in sides:
+                free = probe.escapes(core, points, errors, normals, single(directions))
+                acne[scale, offset] = acne.get((scale, offset), 0) + int(np.count_nonzero(free == 0))
+                tried += len(points)
+            if body.closed:
+                inward = -facing(n, SEED + 3, grazing=False)
+                free = probe.escapes(core, points, errors, normals, single(inward))
+                leaks[scale, offset] = int(np.count_nonzero(free))
+    assert tried > 100_000
+    assert not {at: n for at, n in acne.items() if n}, "shadows itself"
+    assert not {at: n for at, n in leaks.items() if n}, "lets light in"
+
+
+ROOMS = [(1e-4, 0.0), (1.0, 0.0), (1.0, 1e3), (1e6, 0.0), (1.0, 1e5), (1e-4, 30.0)]
+
+
+@pytest.mark.parametrize(("scale", "offset"), ROOMS)
+@pytest.mark.parametrize(
+    "body", [Body("box", True), Body("sphere", True), Body("icosphere", True)], ids=lambda b: b.name
+)
+def test_a_closed_room_in_the_light_is_black_inside(body: Body, scale: float, offset: float) -> None:
+    """Not nearly: not one sample of any ray gathers anything, though the walls reflect and the sky is bright."""
+    center = single(offset * scale * np.array([0.6, -0.48, 0.64])).astype(np.float64)
+    scene = accuray.Scene.from_dict(
+        {
+            "accuray": 1,
+            "materials": {"grey": {"type": "diffuse", "reflectance": 0.8}},
+            "shapes": {"room": body.shape(scale, center)},
+            "lights": {
+                "sky": {"type": "constant", "radiance": 1000.0},
+                "lamp": {"type": "point", "position": list(center + 2.0 * scale), "intensity": 1000.0 * scale**2},
+            },
+        }
+    )
+    count = 1500
+    directions = random_directions(count, SEED)
+    inside = accuray.radiance(scene, rows(center, count), directions, 16, seed=SEED)
+    assert inside.mean.max() == 0.0
+    outside = accuray.radiance(scene, center - 3.0 * scale * directions, directions, 1, seed=SEED)
+    assert outside.mean.min() > 0.0
+
+
+# --- The same hit every time --------------------------------------------------------------------------------------
+
+
+def coincident_scene() -> dict[str, Any]:
+    """The same bumpy mesh three times over, its triangles in three orders, and disks that lie in one plane."""
+    vertices, triangles = bumpy(3, 11)
+    shapes: dict[str, Any] = {}
+    for i in range(3):
+        order = np.random.default_rng(i).permutation(len(triangles))
+        shapes[f"rock{i}"] = {**mesh_shape((vertices, triangles[order])), "material": f"paint{i}"}
+        shapes[f"lid{i}"] = {"type": "disk", "center": [0, 1.5, 0], "radius": 2.0 - 0.3 * i, "material": f"paint{i}"}
+    materials = {f"paint{i}": {"type": "diffuse", "reflectance": 0.2 + 0.3 * i} for i in range(3)}
+    return {"materials": materials, "shapes": shapes, "lights": {"sky": {"type": "constant"}}}
+
+
+def fingerprint() -> str:
+    """Of all hits of some rays with the coincident scene, loaded anew."""
+    core = load(coincident_scene())
+    directions = random_directions(20_000, 3)
+    hits = closest(core, 4.0 * random_directions(20_000, 4), -directions)
+    inner = closest(core, rows(np.zeros(3), 20_000), directions)
+    digest = hashlib.sha256()
+    for found in (hits, inner):
+        for key in ("t", "geometry", "primitive", "point"):
+            digest.update(found[key].tobytes())
+    return digest.hexdigest()
+
+
+def test_coincident_triangles_are_met_alike_in_every_run_and_thread() -> None:
+    """The acceleration structure must not depend on how many threads built it, nor the hit on who asks."""
+    first = fingerprint()
+    assert fingerprint() == first
+    program = (
+        "import os, sys; os.sched_setaffinity(0, [min(os.sched_getaffinity(0))]); sys.path[:0] = sys.argv[1:];"
+        "from tests.kernels.test_intersection import fingerprint; print(fingerprint())"
+    )
+    paths = [str(Path(accuray.__file__).parents[1]), str(Path(__file__).parents[2])]
+    alone = subprocess.run(
+        [sys.executable, "-c", program, *paths], capture_output=True, text=True, check=False, env=dict(os.environ)
+    )
+    assert alone.stdout.strip() == first, alone.stderr
+
+
+def test_pictures_of_coincident_surfaces_do_not_depend_on_the_threads() -> None:
+    scene = accuray.Scene.from_dict({"accuray": 1, "film": {"width": 48, "height": 48}, **coincident_scene()})
+    sums = [accuray.render(scene, spp=4, threads=threads).film.sums for threads in (1, 2, 5)]
+    assert all(np.array_equal(sums[0], other) for other in sums[1:])
+    assert sums[0].any()
