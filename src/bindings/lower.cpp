@@ -34,7 +34,8 @@ MeshArrays to_arrays(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& i
   }
   MeshArrays arrays{to_vector(positions), to_vector(indices), {}, {}};
   for (const uint32_t index : arrays.indices) {
-    if (index >= vertices) throw std::invalid_argument("a face names vertex " + std::to_string(index) + " of " + std::to_string(vertices));
+    if (index >= vertices)
+      throw std::invalid_argument("a face names vertex " + std::to_string(index) + " of " + std::to_string(vertices));
   }
   if (normals) arrays.normals = to_vector(*normals);
   if (uvs) arrays.uvs = to_vector(*uvs);
@@ -43,67 +44,99 @@ MeshArrays to_arrays(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& i
 
 void bind_spectra(nb::class_<SceneBuilder>& builder) {
   builder
-      .def("set_rgb_table",
-           [](SceneBuilder& b, const Column<float>& nodes, const Column<float>& coefficients) {
-             b.spectra().set_rgb_table(to_vector(nodes), to_vector(coefficients));
-           }, "nodes"_a, "coefficients"_a)
-      .def("spectrum_constant", [](SceneBuilder& b, double value) { return b.spectra().constant(value); }, "value"_a)
-      .def("spectrum_table",
-           [](SceneBuilder& b, const Column<double>& wavelengths, const Column<double>& values, bool hold, double scale) {
-             return b.spectra().table(span_of(wavelengths), span_of(values), hold, scale);
-           }, "wavelengths"_a, "values"_a, "hold"_a, "scale"_a)
-      .def("spectrum_rgb_reflectance",
-           [](SceneBuilder& b, double r, double g, double bl, double scale) { return b.spectra().rgb_reflectance(r, g, bl, scale); },
-           "r"_a, "g"_a, "b"_a, "scale"_a)
-      .def("spectrum_rgb_emission",
-           [](SceneBuilder& b, double r, double g, double bl, double scale) { return b.spectra().rgb_emission(r, g, bl, scale); },
-           "r"_a, "g"_a, "b"_a, "scale"_a)
-      .def("spectrum_blackbody",
-           [](SceneBuilder& b, double kelvin, double scale) { return b.spectra().blackbody(kelvin, scale); }, "kelvin"_a, "scale"_a)
-      .def("spectrum_sellmeier",
-           [](SceneBuilder& b, double a0, const std::vector<double>& bs, const std::vector<double>& cs, double scale) {
-             if (bs.size() != cs.size()) throw std::invalid_argument("Sellmeier coefficients B and C differ in number");
-             return b.spectra().sellmeier(a0, bs, cs, scale);
-           }, "a0"_a, "b"_a, "c"_a, "scale"_a)
-      .def("spectrum_cauchy",
-           [](SceneBuilder& b, double a, double c, double scale) { return b.spectra().cauchy(a, c, scale); }, "a"_a, "b"_a, "scale"_a)
-      .def("spectrum_value",
-           [](SceneBuilder& b, SpectrumRef ref, double lambda) { return b.spectra().value(ref, lambda); }, "spectrum"_a,
-           "wavelength"_a, "Value of a spectrum at a wavelength in nm, as kernels evaluate it.");
+      .def(
+          "set_rgb_table",
+          [](SceneBuilder& b, const Column<float>& nodes, const Column<float>& coefficients) {
+            b.spectra().set_rgb_table(to_vector(nodes), to_vector(coefficients));
+          },
+          "nodes"_a, "coefficients"_a)
+      .def(
+          "spectrum_constant", [](SceneBuilder& b, double value) { return b.spectra().constant(value); }, "value"_a)
+      .def(
+          "spectrum_table",
+          [](SceneBuilder& b, const Column<double>& wavelengths, const Column<double>& values, bool hold,
+             double scale) { return b.spectra().table(span_of(wavelengths), span_of(values), hold, scale); },
+          "wavelengths"_a, "values"_a, "hold"_a, "scale"_a)
+      .def(
+          "spectrum_rgb_reflectance",
+          [](SceneBuilder& b, double r, double g, double bl, double scale) {
+            return b.spectra().rgb_reflectance(r, g, bl, scale);
+          },
+          "r"_a, "g"_a, "b"_a, "scale"_a)
+      .def(
+          "spectrum_rgb_emission",
+          [](SceneBuilder& b, double r, double g, double bl, double scale) {
+            return b.spectra().rgb_emission(r, g, bl, scale);
+          },
+          "r"_a, "g"_a, "b"_a, "scale"_a)
+      .def(
+          "spectrum_blackbody",
+          [](SceneBuilder& b, double kelvin, double scale) { return b.spectra().blackbody(kelvin, scale); }, "kelvin"_a,
+          "scale"_a)
+      .def(
+          "spectrum_sellmeier",
+          [](SceneBuilder& b, double a0, const std::vector<double>& bs, const std::vector<double>& cs, double scale) {
+            if (bs.size() != cs.size()) throw std::invalid_argument("Sellmeier coefficients B and C differ in number");
+            return b.spectra().sellmeier(a0, bs, cs, scale);
+          },
+          "a0"_a, "b"_a, "c"_a, "scale"_a)
+      .def(
+          "spectrum_cauchy",
+          [](SceneBuilder& b, double a, double c, double scale) { return b.spectra().cauchy(a, c, scale); }, "a"_a,
+          "b"_a, "scale"_a)
+      .def(
+          "spectrum_value",
+          [](SceneBuilder& b, SpectrumRef ref, double lambda) { return b.spectra().value(ref, lambda); }, "spectrum"_a,
+          "wavelength"_a, "Value of a spectrum at a wavelength in nm, as kernels evaluate it.");
 }
 
 void bind_parts(nb::class_<SceneBuilder>& builder) {
   builder
-      .def("add_material",
-           [](SceneBuilder& b, const std::string& type, const nb::dict& values, std::optional<SpectrumRef> emission, bool both_sides) {
-             return b.add_material(type, to_values(values), emission, both_sides);
-           }, "type"_a, "values"_a, "emission"_a.none(), "both_sides"_a)
-      .def("add_mesh",
-           [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
-              const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
-              const OptionalMatrix& transform, uint32_t material, bool prototype) {
-             return b.add_mesh(to_arrays(positions, indices, normals, uvs), transform, material, prototype);
-           }, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "transform"_a.none(), "material"_a, "prototype"_a)
-      .def("add_shape",
-           [](SceneBuilder& b, const std::string& type, const nb::dict& values, const OptionalMatrix& transform,
-              uint32_t material, bool prototype) {
-             return b.add_shape(type, to_values(values), transform, material, prototype);
-           }, "type"_a, "values"_a, "transform"_a.none(), "material"_a, "prototype"_a)
+      .def(
+          "add_material",
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, std::optional<SpectrumRef> emission,
+             bool both_sides) { return b.add_material(type, to_values(values), emission, both_sides); },
+          "type"_a, "values"_a, "emission"_a.none(), "both_sides"_a)
+      .def(
+          "add_mesh",
+          [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
+             const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
+             const OptionalMatrix& transform, uint32_t material, bool prototype) {
+            return b.add_mesh(to_arrays(positions, indices, normals, uvs), transform, material, prototype);
+          },
+          "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "transform"_a.none(), "material"_a,
+          "prototype"_a)
+      .def(
+          "add_shape",
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, const OptionalMatrix& transform,
+             uint32_t material,
+             bool prototype) { return b.add_shape(type, to_values(values), transform, material, prototype); },
+          "type"_a, "values"_a, "transform"_a.none(), "material"_a, "prototype"_a)
       .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(), "material"_a.none())
-      .def("add_light",
-           [](SceneBuilder& b, const std::string& type, const nb::dict& values, SpectrumRef emission) {
-             b.add_light(type, to_values(values), emission);
-           }, "type"_a, "values"_a, "emission"_a)
-      .def("set_camera",
-           [](SceneBuilder& b, const std::string& type, const nb::dict& values, double aspect) {
-             b.set_camera(type, to_values(values), aspect);
-           }, "type"_a, "values"_a, "aspect"_a)
-      .def("set_filter",
-           [](SceneBuilder& b, const std::string& type, const nb::dict& values) { b.set_filter(type, to_values(values)); },
-           "type"_a, "values"_a)
-      .def("set_integrator",
-           [](SceneBuilder& b, const std::string& type, const nb::dict& values) { b.set_integrator(type, to_values(values)); },
-           "type"_a, "values"_a)
+      .def(
+          "add_light",
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, SpectrumRef emission) {
+            b.add_light(type, to_values(values), emission);
+          },
+          "type"_a, "values"_a, "emission"_a)
+      .def(
+          "set_camera",
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, double aspect) {
+            b.set_camera(type, to_values(values), aspect);
+          },
+          "type"_a, "values"_a, "aspect"_a)
+      .def(
+          "set_filter",
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values) {
+            b.set_filter(type, to_values(values));
+          },
+          "type"_a, "values"_a)
+      .def(
+          "set_integrator",
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values) {
+            b.set_integrator(type, to_values(values));
+          },
+          "type"_a, "values"_a)
       .def("set_film", &SceneBuilder::set_film, "step"_a, "hide_environment"_a)
       .def("finish", &SceneBuilder::finish, "The lowered scene; the builder must not be used afterwards.");
 }
@@ -115,30 +148,40 @@ void bind_lower(nb::module_& module) {
   nb::class_<SpectrumRef>(lower, "SpectrumRef");
   nb::class_<Block>(lower, "Block")
       .def_prop_ro("bytes", &Block::bytes)
-      .def("section", [](const Block& block, size_t i) {
-        const Section& section = block.sections().at(i);
-        return nb::bytes(section.data, section.size);
-      }, "index"_a)
+      .def(
+          "section",
+          [](const Block& block, size_t i) {
+            const Section& section = block.sections().at(i);
+            return nb::bytes(section.data, section.size);
+          },
+          "index"_a)
       .def_prop_ro("sections", [](const Block& block) { return block.sections().size(); });
   nb::class_<SceneBuilder> builder(lower, "SceneBuilder");
-  builder.def("__init__", [](SceneBuilder* self, const Rows<double, 3>& cmf, const Column<double>& d65) {
-    new (self) SceneBuilder(ColourData{to_vector(cmf), to_vector(d65)});
-  }, "cmf"_a, "d65"_a, "cmf: (471, 3) colour matching functions; d65: (471,) scaled to Y = 1; both at 360, 361, ... 830 nm.");
+  builder.def(
+      "__init__",
+      [](SceneBuilder* self, const Rows<double, 3>& cmf, const Column<double>& d65) {
+        new (self) SceneBuilder(ColourData{to_vector(cmf), to_vector(d65)});
+      },
+      "cmf"_a, "d65"_a,
+      "cmf: (471, 3) colour matching functions; d65: (471,) scaled to Y = 1; both at 360, 361, ... 830 nm.");
   bind_spectra(builder);
   bind_parts(builder);
 
   lower.attr("RGB_TABLE_NODES") = kRgbTableNodes;
   lower.def("rgb_table_nodes", [](int n) { return to_numpy(rgb_table_scale_nodes(n), 0); }, "n"_a);
-  lower.def("build_rgb_table", [](int n, const Rows<double, 3>& cmf, const Column<double>& illuminant, int threads) {
-    const auto matching = to_vector(cmf);
-    const auto white = to_vector(illuminant);
-    std::vector<float> table;
-    {
-      const nb::gil_scoped_release release;
-      table = build_rgb_table(n, matching, white, threads);
-    }
-    return to_numpy(std::move(table), 0);
-  }, "n"_a, "cmf"_a, "illuminant"_a, "threads"_a);
+  lower.def(
+      "build_rgb_table",
+      [](int n, const Rows<double, 3>& cmf, const Column<double>& illuminant, int threads) {
+        const auto matching = to_vector(cmf);
+        const auto white = to_vector(illuminant);
+        std::vector<float> table;
+        {
+          const nb::gil_scoped_release release;
+          table = build_rgb_table(n, matching, white, threads);
+        }
+        return to_numpy(std::move(table), 0);
+      },
+      "n"_a, "cmf"_a, "illuminant"_a, "threads"_a);
 }
 
 }  // namespace accuray::bindings

@@ -49,8 +49,8 @@ PyMesh read(const std::string& path) {
   return to_python(std::move(data));
 }
 
-PyMesh repair(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices, const std::optional<Rows<float, 3>>& normals,
-              const std::optional<Rows<float, 2>>& uvs) {
+PyMesh repair(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
+              const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs) {
   mesh::MeshData data;
   data.positions = to_vector(positions);
   data.indices = to_vector(indices);
