@@ -81,7 +81,7 @@ def _circumstances(result: Result) -> str:
     machine = result["machine"]
     busy = machine["load_at_start"][0] > BUSY_SHARE * machine["cores"]
     versions = {
-        row["answer"]["version"]: None
+        f"{row['renderer'].partition(':')[0]} {row['answer']['version'].split()[0]}": None
         for name in ("cornell", "million", "efficiency")
         for row in result.get(name, ())
         if "answer" in row

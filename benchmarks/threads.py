@@ -18,6 +18,7 @@ COLUMNS = {
     "one": "1 thread s|.2f",
     "two": "2 threads s|.2f",
     "speed_up": "speed-up|.2f",
+    "cpu_ratio": "CPU s of two / of one|.2f",
     "wanted": "wanted|.2f",
     "error": "error",
 }
@@ -33,6 +34,7 @@ def measure(
         folder = scenes.write(scenes.build(name), work / f"{name}-threads", settings.SIZE)
         task = {"kind": "time", "spp": spp or settings.SPP[peer], "seed": settings.MEASURED_SEED, "repeats": 2}
         seconds: dict[int, list[float]] = {1: [], 2: []}
+        cpu: dict[int, list[float]] = {1: [], 2: []}
         row: dict[str, Any] = {"renderer": contender.name, "scene": name, "wanted": SPEED_UP_WANTED}
         for threads in (1, 2) * rounds:
             answer = peers.run_job(contender, {"scene": str(folder), "threads": threads, "passes": [task]}, folder)
@@ -40,9 +42,10 @@ def measure(
                 row["error"] = answer["error"]
                 break
             seconds[threads] += answer["passes"][0]["render_s"]
+            cpu[threads] += answer["passes"][0]["cpu_s"]
         else:
             row |= {"one": median(seconds[1]), "two": median(seconds[2])}
-            row["speed_up"] = row["one"] / row["two"]
+            row |= {"speed_up": row["one"] / row["two"], "cpu_ratio": median(cpu[2]) / median(cpu[1])}
         found.append(row)
     return found
 

@@ -1,6 +1,10 @@
 // The kernels' parts one by one, over arrays: what the tests of the lists call, and anyone who studies a BSDF.
 #include <nanobind/stl/array.h>
 
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
 #include "bindings/bindings.h"
 #include "bindings/loaded_scene.h"
 #include "kernels/accel/exhaustive.h"
@@ -209,32 +213,29 @@ nb::object quantized_sums(const std::vector<float>& value, double step, uint32_t
   return to_numpy(std::move(sums), 0);
 }
 
+using Function = double (*)(double);
+
+// The kernels' own functions by name; those of float arguments round theirs first.
+constexpr std::pair<std::string_view, Function> kFunctions[] = {
+    {"sin", [](double x) { return static_cast<double>(sincos(static_cast<float>(x)).sin); }},
+    {"cos", [](double x) { return static_cast<double>(sincos(static_cast<float>(x)).cos); }},
+    {"atan", [](double x) { return static_cast<double>(accuray::atan(static_cast<float>(x))); }},
+    {"asin", [](double x) { return static_cast<double>(accuray::asin(static_cast<float>(x))); }},
+    {"acos", [](double x) { return static_cast<double>(accuray::acos(static_cast<float>(x))); }},
+    {"exp", [](double x) { return accuray::exp(x); }},
+    {"log", [](double x) { return accuray::log(x); }},
+    {"sin64", [](double x) { return sincos(x).sin; }},
+    {"cos64", [](double x) { return sincos(x).cos; }},
+};
+
 nb::object functions(const std::string& name, const Column<double>& x) {
-  std::vector<double> y;
-  const auto map = [&](auto f) {
-    for (size_t i = 0; i < x.size(); ++i) y.push_back(static_cast<double>(f(x.data()[i])));
-  };
-  if (name == "sin")
-    map([](double v) { return sincos(static_cast<float>(v)).sin; });
-  else if (name == "cos")
-    map([](double v) { return sincos(static_cast<float>(v)).cos; });
-  else if (name == "atan")
-    map([](double v) { return accuray::atan(static_cast<float>(v)); });
-  else if (name == "asin")
-    map([](double v) { return accuray::asin(static_cast<float>(v)); });
-  else if (name == "acos")
-    map([](double v) { return accuray::acos(static_cast<float>(v)); });
-  else if (name == "exp")
-    map([](double v) { return accuray::exp(v); });
-  else if (name == "log")
-    map([](double v) { return accuray::log(v); });
-  else if (name == "sin64")
-    map([](double v) { return sincos(v).sin; });
-  else if (name == "cos64")
-    map([](double v) { return sincos(v).cos; });
-  else
-    throw std::invalid_argument("there is no function called '" + name + "'");
-  return to_numpy(std::move(y), 0);
+  for (const auto& [known, f] : kFunctions) {
+    if (known != name) continue;
+    std::vector<double> y(x.size());
+    std::transform(x.data(), x.data() + x.size(), y.begin(), f);
+    return to_numpy(std::move(y), 0);
+  }
+  throw std::invalid_argument("there is no function called '" + name + "'");
 }
 
 }  // namespace

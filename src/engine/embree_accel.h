@@ -44,8 +44,8 @@ class EmbreeScene {
   };
 
  private:
-  RTCGeometry make_geometry(uint32_t geometry);
-  void attach(RTCScene target, uint32_t geometry, uint32_t id);
+  RTCGeometry make_geometry(uint32_t number);
+  void attach(RTCScene target, uint32_t number, uint32_t id);
   RTCScene prototype_scene(uint32_t first, uint32_t count);
   void attach_instances();
   void commit(RTCScene target);

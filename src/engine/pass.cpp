@@ -108,10 +108,10 @@ bool render_tile(const SceneView& scene, const EmbreeAccel& accel, const Request
     for (uint32_t x = left; x < right; ++x) {
       const uint32_t pixel = (y - top) * tile_size + (x - left);
       for (uint32_t i = first; i < first + count; ++i) {
+        if (stop) return false;
         sums.add(pixel, i % request.replicates,
                  sample_pixel(scene, accel, request, film.x0 + x, film.y0 + y, i, inverse_step));
       }
-      if (stop) return false;
     }
   }
   for (uint32_t y = top; y < bottom; ++y) {

@@ -1,4 +1,4 @@
-"""Shipped scenes in a form in which the naive `reference` integrator can be compared with the others.
+"""Scenes in a form in which the naive `reference` integrator can be compared with the others.
 
 `reference` finds light only where its paths run into it, so a small lamp leaves it nothing but noise. Each scene is
 changed for all integrators alike: few pixels, the box filter, and what `FAIR` says for it. A scene that is not in the
@@ -85,6 +85,7 @@ FAIR = {
     "spheres": Fair(
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
+    "zoo": Fair("as it is: its lamps are large"),
 }
 
 
@@ -93,7 +94,17 @@ def shipped() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob("*.toml"))
 
 
+def all_scenes() -> list[str]:
+    """The shipped ones, and the one beside this file that holds what they lack: see there."""
+    return [*shipped(), "zoo"]
+
+
+def scene_file(name: str) -> Path:
+    """Where one of `all_scenes` is described."""
+    return (Path(__file__).parent if name == "zoo" else FOLDER) / f"{name}.toml"
+
+
 def fair_scene(name: str, integrator: Table) -> accuray.Scene:
-    """The shipped scene in its fair form, with an integrator in place of its own."""
+    """One of `all_scenes` in its fair form, with an integrator in place of its own."""
     small = {"film.width": SIZE, "film.height": SIZE, "film.filter": {"type": "box"}, "integrator": integrator}
-    return FAIR.get(name, UNKNOWN).change(accuray.load(FOLDER / f"{name}.toml", overrides=small))
+    return FAIR.get(name, UNKNOWN).change(accuray.load(scene_file(name), overrides=small))

@@ -1,7 +1,7 @@
 """The same bits whatever the number of threads, the order and grouping of the work, and the number of processes.
 
-On every shipped scene, small and of an odd size, with its own filter: what an EXR holds for viewers is compared bit by
-bit, and the film's sums behind it. Only another seed, or another sample, may change them.
+On every shipped scene and the zoo, small and of an odd size, with their own filters: what an EXR holds for viewers is
+compared bit by bit, and the film's sums behind it. Only another seed, or another sample, may change them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 import pytest
-from fair import FOLDER, shipped
+from fair import all_scenes, scene_file
 from numpy.typing import NDArray
 
 pytest.importorskip("accuray._core", reason="the compiled module is not built")
@@ -31,12 +31,12 @@ TILES = 6
 SEED = 5
 OVERRIDES = (f"film.width={WIDTH}", f"film.height={HEIGHT}", f"render.spp={SPP}", f"render.seed={SEED}")
 
-every_scene = pytest.mark.parametrize("name", shipped())
+every_scene = pytest.mark.parametrize("name", all_scenes())
 
 
 @functools.cache
 def scene(name: str) -> accuray.Scene:
-    return accuray.load(FOLDER / f"{name}.toml", overrides=OVERRIDES)
+    return accuray.load(scene_file(name), overrides=OVERRIDES)
 
 
 @functools.cache
@@ -48,7 +48,7 @@ def whole(name: str) -> Image:
 def command(name: str, *more: str) -> list[str]:
     """Arguments of `accuray` that render the same image."""
     settings = [word for text in OVERRIDES for word in ("-D", text)]
-    return ["render", "-q", str(FOLDER / f"{name}.toml"), *settings, *more]
+    return ["render", "-q", str(scene_file(name)), *settings, *more]
 
 
 def pixel_bits(path: Path) -> dict[str, NDArray[np.uint32]]:

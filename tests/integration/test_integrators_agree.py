@@ -1,4 +1,4 @@
-"""Every integrator, by every strategy, gives on every shipped scene what the naive `reference` gives.
+"""Every integrator, by every strategy, gives on every shipped scene, and on the zoo, what the naive `reference` gives.
 
 Images are compared by the means of 8x8 blocks in X, Y and Z. A comparison counts only if the standard error of every
 block's difference is at most 1 % of the block's mean; a scene whose images stay noisier than that at `MOST_SPP` fails
@@ -21,7 +21,7 @@ import pytest
 from numpy.typing import NDArray
 
 pytest.importorskip("accuray._core", reason="the compiled module is not built")
-from fair import FAIR, Table, fair_scene, shipped
+from fair import FAIR, Table, all_scenes, fair_scene
 
 import accuray
 from accuray.film.estimates import pixel_estimates
@@ -57,8 +57,10 @@ def candidates() -> dict[str, Table]:
 def images_of_interest() -> list[tuple[str, str]]:
     """What the quick tier compares: (scene, integrator)."""
     others = [name for name in candidates() if name != "path/mis"]
-    pairs = [(scene, "path/mis") for scene in shipped()]
-    return pairs + [(s, others[(i + SEED) // 2 % len(others)]) for i, s in enumerate(shipped()) if (i + SEED) % 2 == 0]
+    pairs = [(scene, "path/mis") for scene in all_scenes()]
+    return pairs + [
+        (s, others[(i + SEED) // 2 % len(others)]) for i, s in enumerate(all_scenes()) if (i + SEED) % 2 == 0
+    ]
 
 
 @functools.cache
@@ -104,8 +106,8 @@ def compare(scene: str, which: str) -> None:
 
 
 def test_the_tables_name_what_there_is() -> None:
-    assert set(FAIR) <= set(shipped())
-    assert {scene for scene, _ in JUDGES} <= set(shipped())
+    assert set(FAIR) <= set(all_scenes())
+    assert {scene for scene, _ in JUDGES} <= set(all_scenes())
     assert {which for _, which in JUDGES} <= set(candidates())
     assert set(DEPTHS) <= {which.split("/")[0] for which in candidates()}
 
@@ -117,6 +119,6 @@ def test_agrees_with_reference(scene: str, which: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("which", candidates())
-@pytest.mark.parametrize("scene", shipped())
+@pytest.mark.parametrize("scene", all_scenes())
 def test_all_agree_with_reference(scene: str, which: str) -> None:
     compare(scene, which)

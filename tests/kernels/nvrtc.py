@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import functools
 import importlib.util
 import re
 from dataclasses import dataclass
@@ -58,9 +59,14 @@ def headers(overlay: dict[str, str] | None = None) -> dict[str, bytes]:
 
 
 def compile_kernel(source: str, overlay: dict[str, str] | None = None) -> Build:
-    """Builds a kernel for sm_90. Raises AssertionError with the compiler's log."""
+    """Builds a kernel for sm_90, once a run of the tests. Raises AssertionError with the compiler's log."""
+    return _compile(source, tuple(headers(overlay).items()))
+
+
+@functools.cache
+def _compile(source: str, files: tuple[tuple[str, bytes], ...]) -> Build:
     lib = library()
-    included = headers(overlay)
+    included = dict(files)
     contents = (ctypes.c_char_p * len(included))(*included.values())
     names = (ctypes.c_char_p * len(included))(*(name.encode() for name in included))
     program = ctypes.c_void_p()

@@ -20,8 +20,6 @@ from accuray.testing import random_directions
 from tests.kernels.light_cases import motion
 from tests.kernels.support import SEED, FloatArray, load, rows, single
 
-pytestmark = pytest.mark.long  # some rows are not reached yet: see docs/verification.md
-
 GREY = {"grey": {"type": "diffuse", "reflectance": 0.5}}
 NONE = 0xFFFFFFFF
 Mesh = tuple[FloatArray, NDArray[np.int64]]
@@ -80,12 +78,24 @@ def random_scene(seed: int, small: bool) -> dict[str, Any]:
     shapes: dict[str, Any] = {"near": mesh_shape(bumpy(0 if small else 1, seed))}
     for i in range(2 if small else 6):
         ball = {"type": "sphere", "center": vec(3), "radius": float(rng.uniform(0.3, 1.2)), "material": "grey"}
-        disk = {"type": "disk", "center": vec(3), "normal": vec(1), "radius": float(rng.uniform(0.5, 2)), "material": "grey"}
+        disk = {
+            "type": "disk",
+            "center": vec(3),
+            "normal": vec(1),
+            "radius": float(rng.uniform(0.5, 2)),
+            "material": "grey",
+        }
         quad = {"type": "rectangle", "corner": vec(3), "edge_u": vec(3), "edge_v": vec(3), "material": "grey"}
         shapes |= {f"ball{i}": ball, f"disk{i}": disk, f"quad{i}": quad}
     if not small:
         shapes["part"] = {**mesh_shape(bumpy(0, seed + 1)), "prototype": True}
-        shapes["stone"] = {"type": "sphere", "center": [1.2, 0, 0], "radius": 0.4, "material": "grey", "prototype": True}
+        shapes["stone"] = {
+            "type": "sphere",
+            "center": [1.2, 0, 0],
+            "radius": 0.4,
+            "material": "grey",
+            "prototype": True,
+        }
         shapes["lid"] = {"type": "disk", "center": [0, 1.3, 0], "radius": 0.5, "material": "grey", "prototype": True}
         for i, scale in enumerate((0.7, -0.5, 1.3)):
             matrix = motion(scale)
@@ -194,8 +204,9 @@ def test_no_ray_leaves_a_closed_mesh(search: str) -> None:
 
 @each_search
 def test_only_rays_at_the_last_bit_of_a_vertex_pass_it_by(search: str) -> None:
-    """Edges that meet in a vertex are walked by several triangles, each with its own rounding of the vertex: a ray that
-    meets it to 10^-7 may have all of them on one side. That is one ray in 10^14 for each vertex; 10^-5 beside it, none."""
+    """Triangles that share a vertex each round it their own way: a ray within 10^-7 of it may be outside of them all.
+    That is one ray in 10^14 for each vertex; 10^-5 beside it there is none.
+    """
     mesh, core = closed_mesh(search)
     vertices = single(mesh[0]).astype(np.float64)
     spread = np.random.default_rng(SEED).normal(size=(4, len(vertices), 3))

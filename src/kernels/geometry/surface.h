@@ -41,25 +41,45 @@ inline Triangle triangle_of(const SceneView& scene, const Mesh& mesh, uint32_t p
           index[2]};
 }
 
-// Barycentric interpolation errs by gamma(7) times the sum of magnitudes (Pharr et al. 2023, eq. 6.33). The
-// intersector's own test errs in proportion to the triangle's distance from the ray's origin; as that origin lies on
-// some surface of comparable coordinates, its part is bounded by the vertices' magnitudes and the triangle's extent.
+// Points are interpolated from p0 along the edges, which rounds three times at the magnitude of the coordinates and
+// some times at that of the triangle. The intersector's own test errs in proportion to the triangle's distance from the
+// ray's origin; as that origin lies on some surface of comparable coordinates, its part is bounded by the vertices'
+// magnitudes and the triangle's extent.
 inline Vec3 triangle_error(const Triangle& tri) {
   const Vec3 a = abs(tri.p0);
   const Vec3 b = abs(tri.p1);
   const Vec3 c = abs(tri.p2);
   const Vec3 m = {max(a.x, max(b.x, c.x)), max(a.y, max(b.y, c.y)), max(a.z, max(b.z, c.z))};
   const float extent = max_component(abs(tri.p1 - tri.p0)) + max_component(abs(tri.p2 - tri.p0));
-  const float common = gamma(2) * extent;
-  return {fma(gamma(10), m.x, common), fma(gamma(10), m.y, common), fma(gamma(10), m.z, common)};
+  const float common = gamma(4) * extent;
+  return {fma(gamma(5), m.x, common), fma(gamma(5), m.y, common), fma(gamma(5), m.z, common)};
 }
 
-inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Surface& s) {
-  const Triangle tri = triangle_of(scene, mesh, hit.primitive);
-  const float w = 1.0f - hit.u - hit.v;
-  s.point = fma(w, tri.p0, fma(hit.u, tri.p1, tri.p2 * hit.v));
+// Moves a hit off the edges of its triangle by `margin` of the barycentric coordinates. A point next to an edge may be
+// rounded beyond the neighbouring triangle, and a ray from there would leave a closed mesh.
+inline Hit inset(Hit hit, float margin) {
+  const float u = max(hit.u - margin, 0.0f);
+  const float v = max(hit.v - margin, 0.0f);
+  const float room = 1.0f - 3.0f * margin;
+  const float shrink = u + v > room ? room / (u + v) : 1.0f;
+  hit.u = fma(u, shrink, margin);
+  hit.v = fma(v, shrink, margin);
+  return hit;
+}
+
+// `rounding` is what the point will be rounded by after this, in the mesh's own space.
+inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& met, float rounding, Surface& s) {
+  const Triangle tri = triangle_of(scene, mesh, met.primitive);
+  const Vec3 e1 = tri.p1 - tri.p0;
+  const Vec3 e2 = tri.p2 - tri.p0;
+  const Vec3 n0 = cross(e1, e2);
+  const float doubled_area = length(n0);
   s.error = triangle_error(tri);
-  s.normal = normalize(cross(tri.p1 - tri.p0, tri.p2 - tri.p0));
+  const float extent = max_component(abs(e1)) + max_component(abs(e2));
+  const Hit hit = inset(met, min(4.0f * (max_component(s.error) + rounding) * extent / doubled_area, 0.25f));
+  const float w = 1.0f - hit.u - hit.v;
+  s.point = fma(hit.u, e1, fma(hit.v, e2, tri.p0));
+  s.normal = n0 * (1.0f / doubled_area);
   s.shading = s.normal;
   if (mesh.normals.count != 0) {
     const float* normals = scene.at(mesh.normals);
@@ -92,9 +112,9 @@ inline void place_on_disk(const Disk& disk, const Ray& ray, const Hit& hit, Surf
 }
 
 inline void place_on_shape(const SceneView& scene, const GeometryRecord& geometry, const Ray& ray, const Hit& hit,
-                           Surface& s) {
+                           float rounding, Surface& s) {
   if (geometry.shape.tag == tag_of<Mesh>(Shapes{})) {
-    place_on_mesh(scene, scene.as<Mesh>(geometry.shape), hit, s);
+    place_on_mesh(scene, scene.as<Mesh>(geometry.shape), hit, rounding, s);
   } else if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
     place_on_sphere(scene.as<Sphere>(geometry.shape), ray, hit, s);
   } else {
@@ -118,13 +138,16 @@ inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit
   s.material = geometry.material;
   uint32_t lights = geometry.lights;
   if (hit.instance == none) {
-    place_on_shape(scene, geometry, ray, hit, s);
+    place_on_shape(scene, geometry, ray, hit, 0.0f, s);
   } else {
     const InstanceRecord& instance = scene.instances[hit.instance];
     Ray local = ray;
     local.origin = instance.to_object.point(ray.origin);
     local.direction = instance.to_object.vector(ray.direction);
-    place_on_shape(scene, geometry, local, hit, s);
+    const Transform& m = instance.to_world;
+    const float scale = length({m.m[0][0], m.m[1][0], m.m[2][0]});
+    const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, local.direction, local.origin))) / scale;
+    place_on_shape(scene, geometry, local, hit, rounding, s);
     to_world(instance, s);
     if (instance.material != none) s.material = instance.material;
     lights = instance.lights == none ? none : scene.lights_of_instance[instance.lights + hit.geometry - instance.first];
