@@ -27,6 +27,9 @@ Wavelengths carried(const std::vector<float>& wavelengths) {
   return Wavelengths::at(lanes(wavelengths[0], wavelengths[1], wavelengths[2], wavelengths[3]), lanes(1.0f));
 }
 
+// A place on no shape: what a BSDF alone is asked at.
+constexpr TexturePoint middle = {{0.5f, 0.5f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
+
 // Calls fn with the values of the material's BSDF at the wavelengths.
 template <class Fn>
 void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, Fn&& fn) {
@@ -34,7 +37,8 @@ void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<fl
   if (material >= view.root->materials.count) throw std::invalid_argument("there is no such material");
   const Tagged bsdf = view.materials[material].bsdf;
   dispatch(Bsdfs{}, bsdf.tag, [&](auto type) {
-    fn(view.as<typename decltype(type)::type>(bsdf).at(view, carried(wavelengths)));
+    const Wavelengths wl = carried(wavelengths);
+    fn(view.as<typename decltype(type)::type>(bsdf).at({view, wl, middle}));
     return true;
   });
 }

@@ -11,7 +11,7 @@
 
 namespace accuray {
 
-constexpr uint32_t block_version = 1;
+constexpr uint32_t block_version = 2;
 constexpr uint32_t lambda_guide_size = 512;
 
 template <class T>
@@ -31,6 +31,7 @@ struct MaterialRecord {
   Tagged bsdf;
   SpectrumRef emission;  // none: does not emit
   uint32_t emits_both_sides;
+  uint32_t reads_texture_point;  // it is textured, or its BSDF is oriented
 };
 
 struct GeometryRecord {

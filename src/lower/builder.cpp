@@ -65,8 +65,10 @@ SceneBuilder::SceneBuilder(ColourData colour) : spectra_(std::move(colour)), lig
 uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
                                     bool both_sides) {
   const bool emits = emission && !spectra_.is_zero(*emission);
-  materials_.push_back(
-      {lower_type(Bsdfs{}, type, values, pool_), {emits ? emission->index : none}, both_sides ? 1u : 0u});
+  const Tagged bsdf = lower_type(Bsdfs{}, type, values, pool_);
+  const bool oriented =
+      dispatch(Bsdfs{}, bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::oriented; }; });
+  materials_.push_back({bsdf, {emits ? emission->index : none}, both_sides ? 1u : 0u, oriented ? 1u : 0u});
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 

@@ -1,11 +1,12 @@
 // What every BSDF offers.
 //
-// A BSDF is a struct X of parameters, as the scene stores them, and the values XAt = X::at(scene, wavelengths) at one
-// hit. It is listed in list.h; the tests of the list check every law that X::keeps claims.
+// A BSDF is a struct X of parameters, as the scene stores them, and the values XAt = X::at(shading point) at one hit.
+// It is listed in list.h; the tests of the list check every law that X::keeps claims.
 //
 // Conventions
 //   - Directions are unit vectors that leave the surface, in the local frame whose +z is the shading normal on the
-//     front side. `wo` points to where the path came from and is given, `wi` to where light comes from.
+//     front side and, if X::oriented, whose +x follows dpdu. `wo` points to where the path came from and is given, `wi`
+//     to where light comes from.
 //   - eval(wo, wi) is f |cos(theta_i)| per lane, pdf(wo, wi) the density of wi per solid angle; both are 0 for
 //     perfectly specular (delta) lobes.
 //   - sample(wo, u_lobe, u) returns weight = f |cos(theta_i)| / pdf, or the whole weight of a delta lobe. A failed
@@ -13,11 +14,19 @@
 //   - Transmitted radiance is scaled by (eta_o / eta_i)^2, eta_o being the index on the side of wo.
 #pragma once
 
-#include "kernels/math/vec.h"
-#include "kernels/scene_view.h"
+#include "kernels/geometry/texture_point.h"
 #include "kernels/schema.h"
 
 namespace accuray {
+
+// Where a BSDF reads its values from: the scene's tables at the path's wavelengths, at one place of the surface.
+struct ShadingPoint {
+  const SceneView& scene;
+  const Wavelengths& wl;
+  TexturePoint where;  // set for materials whose record says that they read it
+
+  Spectrum spectrum(SpectrumRef ref) const { return scene.spectrum(ref, wl); }
+};
 
 enum Lobe : uint32_t {
   lobe_none = 0,

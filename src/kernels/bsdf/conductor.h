@@ -50,9 +50,7 @@ struct Conductor {
                             .animatable = true,
                             .member = ACCURAY_OFFSET_OF(Conductor, k)});
   }
-  ConductorAt at(const SceneView& scene, const Wavelengths& wl) const {
-    return {scene.spectrum(eta, wl), scene.spectrum(k, wl)};
-  }
+  ConductorAt at(const ShadingPoint& p) const { return {p.spectrum(eta), p.spectrum(k)}; }
 };
 
 }  // namespace accuray

@@ -51,8 +51,9 @@ struct Dielectric {
   static constexpr auto params() {
     return param_list(Param{.name = "ior",
                             .kind = Kind::spectrum,
-                            .doc = "Index behind the surface relative to the index before it: a number, a named glass "
-                                   "(N-BK7, SF11, water, diamond, ...), Sellmeier or Cauchy coefficients, or a table.",
+                            .doc =
+                                "Index behind the surface relative to the index before it: a number, a named glass "
+                                "(N-BK7, SF11, water_20C, diamond, ...), Sellmeier or Cauchy coefficients, or a table.",
                             .preset = "1.5",
                             .low = 0.05,
                             .high = 20,
@@ -61,8 +62,8 @@ struct Dielectric {
                             .animatable = true,
                             .member = ACCURAY_OFFSET_OF(Dielectric, ior)});
   }
-  DielectricAt at(const SceneView& scene, const Wavelengths& wl) const {
-    return {scene.spectrum(ior, wl), scene.spectra[ior.index].form != SpectrumForm::constant, wl.hero_only};
+  DielectricAt at(const ShadingPoint& p) const {
+    return {p.spectrum(ior), p.scene.spectra[ior.index].form != SpectrumForm::constant, p.wl.hero_only};
   }
 };
 

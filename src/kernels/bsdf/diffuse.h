@@ -43,7 +43,7 @@ struct Diffuse {
                             .animatable = true,
                             .member = ACCURAY_OFFSET_OF(Diffuse, reflectance)});
   }
-  DiffuseAt at(const SceneView& scene, const Wavelengths& wl) const { return {scene.spectrum(reflectance, wl)}; }
+  DiffuseAt at(const ShadingPoint& p) const { return {p.spectrum(reflectance)}; }
 };
 
 }  // namespace accuray

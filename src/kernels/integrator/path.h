@@ -84,11 +84,12 @@ struct PathTracing {
     const float u_lobe = u_decision[1];
     const float u_roulette = u_decision[2];
 
-    const Frame frame = Frame::around(surface.shading);
+    const ShadingPoint point = shading_point(scene, material, path, surface);
+    const Frame frame = shading_frame(material, surface, point);
     const Vec3 wo = frame.to_local(toward_viewer);
     path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
       using Bsdf = typename decltype(type)::type;
-      const auto bsdf = scene.as<Bsdf>(material.bsdf).at(scene, path.wl);
+      const auto bsdf = scene.as<Bsdf>(material.bsdf).at(point);
       if constexpr (!decltype(bsdf)::delta_only) {
         if (can_afford(path, lobe_diffuse)) {
           sample_light(scene, accel, strategy, surface, frame, bsdf, wo, u_light, u_choice, path);

@@ -39,12 +39,13 @@ struct Reference {
       if (max_depth >= 0 && path.depth >= static_cast<uint32_t>(max_depth)) return;
       const f32x4 u = path.sampler.draw(direction_set(path));
       const f32x4 u_decision = path.sampler.draw(decision_set(path));
-      const Frame frame = Frame::around(surface.shading);
+      const MaterialRecord& material = scene.materials[surface.material];
+      const ShadingPoint point = shading_point(scene, material, path, surface);
+      const Frame frame = shading_frame(material, surface, point);
       const Vec3 wo = frame.to_local(toward_viewer);
-      const Tagged material = scene.materials[surface.material].bsdf;
-      path.alive = dispatch(Bsdfs{}, material.tag, [&](auto type) {
+      path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
         using Bsdf = typename decltype(type)::type;
-        const auto bsdf = scene.as<Bsdf>(material).at(scene, path.wl);
+        const auto bsdf = scene.as<Bsdf>(material.bsdf).at(point);
         add_points(scene, accel, surface, frame, bsdf, wo, path);
         return scatter(surface, frame, bsdf.sample(wo, u_decision[1], {u[2], u[3]}), path);
       });

@@ -17,6 +17,17 @@ inline float mis_weight(float pdf, float other) {
   return a / (a + other * other);
 }
 
+// Where the BSDF of a hit reads its values, and the frame that its directions are in.
+inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& material, const Path& path,
+                                  const Surface& surface) {
+  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}};
+  return {scene, path.wl, texture_point(scene, path.hit, surface)};
+}
+inline Frame shading_frame(const MaterialRecord& material, const Surface& surface, const ShadingPoint& p) {
+  return material.reads_texture_point == 0 ? Frame::around(surface.shading)
+                                           : Frame::along(surface.shading, p.where.dpdu);
+}
+
 template <Accel A>
 inline void intersect(const A& accel, Path& path) {
   path.hit = accel.closest(path.ray);

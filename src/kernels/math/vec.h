@@ -54,6 +54,14 @@ struct Frame {
     const float b = n.x * n.y * a;
     return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
+  // With x as close to `tangent` as the unit normal n lets it be; any x if they are parallel.
+  static Frame along(Vec3 n, Vec3 tangent) {
+    const Vec3 across = cross(n, tangent);
+    const float squared = length_squared(across);
+    if (!(squared > 0.0f) || !is_finite(squared)) return around(n);
+    const Vec3 y = across * (1.0f / sqrt(squared));
+    return {cross(y, n), y, n};
+  }
   Vec3 to_local(Vec3 v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
   Vec3 to_world(Vec3 v) const { return fma(v.x, x, fma(v.y, y, z * v.z)); }
 };

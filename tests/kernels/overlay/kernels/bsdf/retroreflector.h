@@ -62,9 +62,7 @@ struct Retroreflector {
                             .high = 100,
                             .member = ACCURAY_OFFSET_OF(Retroreflector, exponent)});
   }
-  RetroreflectorAt at(const SceneView& scene, const Wavelengths& wl) const {
-    return {scene.spectrum(reflectance, wl), exponent};
-  }
+  RetroreflectorAt at(const ShadingPoint& p) const { return {p.spectrum(reflectance), exponent}; }
 };
 
 }  // namespace accuray

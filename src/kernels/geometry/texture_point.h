@@ -1,0 +1,94 @@
+// Where a hit lies in its surface's own coordinates: what textures are read at and anisotropic materials turn with.
+#pragma once
+
+#include "kernels/geometry/surface.h"
+
+namespace accuray {
+
+// Conventions
+//   - `uv` are a mesh's own texture coordinates where it has some, else the hit's barycentric ones; on a sphere u runs
+//     once around its y axis and v from the south pole to the north; on a disk both run over its bounding square.
+//   - `dpdu` and `dpdv` are derivatives of the point by them, in world space; never zero, and never parallel.
+struct TexturePoint {
+  Vec2 uv;
+  Vec3 dpdu, dpdv;
+};
+
+// Two tangents of no particular direction, for where the coordinates give none.
+inline void any_tangents(Vec3 normal, TexturePoint& p) {
+  const Frame frame = Frame::around(normal);
+  p.dpdu = frame.x;
+  p.dpdv = frame.y;
+}
+
+inline TexturePoint point_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Vec3 normal) {
+  const Triangle tri = triangle_of(scene, mesh, hit.primitive);
+  const Vec3 e1 = tri.p1 - tri.p0;
+  const Vec3 e2 = tri.p2 - tri.p0;
+  if (mesh.uvs.count == 0) return {{hit.u, hit.v}, e1, e2};
+  const float* uvs = scene.at(mesh.uvs);
+  const auto uv = [&](uint32_t vertex) { return Vec2{uvs[size_t{2} * vertex], uvs[size_t{2} * vertex + 1]}; };
+  const Vec2 a = uv(tri.i0);
+  const Vec2 b = uv(tri.i1);
+  const Vec2 c = uv(tri.i2);
+  const Vec2 ab = {b.x - a.x, b.y - a.y};
+  const Vec2 ac = {c.x - a.x, c.y - a.y};
+  TexturePoint p;
+  p.uv = {fma(hit.u, ab.x, fma(hit.v, ac.x, a.x)), fma(hit.u, ab.y, fma(hit.v, ac.y, a.y))};
+  const float determinant = difference_of_products(ab.x, ac.y, ab.y, ac.x);
+  const float scale = 1.0f / determinant;
+  p.dpdu = (e1 * ac.y - e2 * ab.y) * scale;
+  p.dpdv = (e2 * ab.x - e1 * ac.x) * scale;
+  const float squared = length_squared(cross(p.dpdu, p.dpdv));
+  if (!(squared > 0.0f) || !is_finite(squared)) any_tangents(normal, p);
+  return p;
+}
+
+// `direction` leads from the centre to the hit.
+inline TexturePoint point_on_sphere(Vec3 direction, float radius) {
+  const float u = atan2(-direction.z, direction.x) * (0.5f * inv_pi);
+  const float v = acos(min(max(-direction.y, -1.0f), 1.0f)) * inv_pi;
+  const float around = sqrt(direction.x * direction.x + direction.z * direction.z);
+  TexturePoint p{{u < 0.0f ? u + 1.0f : u, v}, {}, {}};
+  if (around < 1e-6f) {
+    any_tangents(direction, p);
+    return p;
+  }
+  p.dpdu = Vec3{direction.z, 0.0f, -direction.x} * (2.0f * pi * radius);
+  p.dpdv = Vec3{-direction.x * direction.y / around, around, -direction.z * direction.y / around} * (pi * radius);
+  return p;
+}
+
+inline TexturePoint point_on_disk(const Disk& disk, Vec3 point) {
+  const Frame frame = Frame::around(disk.normal);
+  const Vec3 p = frame.to_local(point - disk.center);
+  const float scale = 0.5f / disk.radius;
+  return {
+      {fma(p.x, scale, 0.5f), fma(p.y, scale, 0.5f)}, frame.x * (2.0f * disk.radius), frame.y * (2.0f * disk.radius)};
+}
+
+// `hit` must have met something, and `surface` be what surface_at() made of it.
+inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const Surface& surface) {
+  const Tagged shape = scene.geometries[hit.geometry].shape;
+  const bool instanced = hit.instance != none;
+  const auto local = [&](Vec3 p) { return instanced ? scene.instances[hit.instance].to_object.point(p) : p; };
+  TexturePoint p;
+  if (shape.tag == tag_of<Mesh>(Shapes{})) {
+    Vec3 normal = surface.normal;
+    if (instanced) normal = normalize(scene.instances[hit.instance].to_object.vector(normal));
+    p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal);
+  } else if (shape.tag == tag_of<Sphere>(Shapes{})) {
+    const Sphere& sphere = scene.as<Sphere>(shape);
+    p = point_on_sphere(normalize(local(surface.point) - sphere.center), sphere.radius);
+  } else {
+    p = point_on_disk(scene.as<Disk>(shape), local(surface.point));
+  }
+  if (instanced) {
+    const Transform& to_world = scene.instances[hit.instance].to_world;
+    p.dpdu = to_world.vector(p.dpdu);
+    p.dpdv = to_world.vector(p.dpdv);
+  }
+  return p;
+}
+
+}  // namespace accuray
