@@ -72,22 +72,20 @@ uint32_t SceneBuilder::add_material(std::string_view type, const Values& values,
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 
-void SceneBuilder::grow_bounds(Vec3 p) {
-  low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
-  high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
-}
-
 float SceneBuilder::scene_radius() const {
-  return low_.x <= high_.x ? std::max(0.5f * length(high_ - low_), 1e-6f) : 1.0f;
+  return scene_bounds_.empty() ? 1.0f : std::max(0.5f * length(scene_bounds_.high - scene_bounds_.low), 1e-6f);
 }
 
-uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t lights, bool prototype) {
+uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds,
+                                    bool prototype) {
   const auto number = static_cast<uint32_t>(geometries_.size());
   if (!prototype) {
     if (root_.top_geometries != number) throw std::logic_error("prototypes must be added after all other shapes");
     ++root_.top_geometries;
+    scene_bounds_.grow(bounds);
   }
   geometries_.push_back({shape, material, lights});
+  bounds_.push_back(bounds);
   return number;
 }
 
@@ -110,10 +108,9 @@ uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& m
 uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material,
                                 bool prototype) {
   if (transform) move_mesh(*transform, arrays);
-  if (!prototype) {
-    for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
-      grow_bounds({arrays.positions[i], arrays.positions[i + 1], arrays.positions[i + 2]});
-    }
+  Bounds bounds;
+  for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
+    bounds.grow(Vec3{arrays.positions[i], arrays.positions[i + 1], arrays.positions[i + 2]});
   }
   const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material));
   Mesh mesh{};
@@ -126,17 +123,15 @@ uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& 
   store(mesh.indices, std::move(arrays.indices));
   store(mesh.normals, std::move(arrays.normals));
   store(mesh.uvs, std::move(arrays.uvs));
-  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, prototype);
+  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, bounds, prototype);
 }
 
 template <class Shape>
 uint32_t SceneBuilder::add_analytic(const Shape& shape, uint32_t material, bool prototype) {
-  if (!prototype) {
-    grow_bounds(shape.center - Vec3{shape.radius, shape.radius, shape.radius});
-    grow_bounds(shape.center + Vec3{shape.radius, shape.radius, shape.radius});
-  }
+  const Vec3 radius = {shape.radius, shape.radius, shape.radius};
   const uint32_t lights = prototype ? none : add_surface_light(light_of(shape), materials_.at(material));
-  return add_geometry({tag_of<Shape>(Shapes{}), pool_.add(shape)}, material, lights, prototype);
+  const Bounds bounds = {shape.center - radius, shape.center + radius};
+  return add_geometry({tag_of<Shape>(Shapes{}), pool_.add(shape)}, material, lights, bounds, prototype);
 }
 
 uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,
@@ -170,40 +165,34 @@ uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecor
   bool any = false;
   for (uint32_t g = instance.first; g < instance.first + instance.count; ++g) {
     const GeometryRecord& geometry = geometries_.at(g);
-    const MaterialRecord& made_of = materials_.at(material.value_or(geometry.material));
-    const uint32_t* parameters = pool_.words().data() + geometry.shape.offset;
-    uint32_t lights = none;
-    if (geometry.shape.tag == tag_of<Mesh>(Shapes{})) {
-      const Mesh& mesh = *reinterpret_cast<const Mesh*>(parameters);
-      const Section& positions = bulk_.at(mesh.positions.section - 1);
-      const Section& indices = bulk_.at(mesh.indices.section - 1);
-      MeshArrays world;
-      const auto* p = reinterpret_cast<const float*>(positions.data);
-      const auto* i = reinterpret_cast<const uint32_t*>(indices.data);
-      world.positions.assign(p, p + mesh.positions.count);
-      world.indices.assign(i, i + mesh.indices.count);
-      move_mesh(matrix, world);
-      for (size_t k = 0; k + 2 < world.positions.size(); k += 3) {
-        grow_bounds({world.positions[k], world.positions[k + 1], world.positions[k + 2]});
-      }
-      if (made_of.emission.index != none) {
-        lights = add_mesh_lights(world, made_of);
-      }
-    } else if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
-      const Sphere sphere = moved(matrix, *reinterpret_cast<const Sphere*>(parameters));
-      grow_bounds(sphere.center);
-      lights = add_surface_light(light_of(sphere), made_of);
-    } else {
-      const Disk disk = moved(matrix, *reinterpret_cast<const Disk*>(parameters));
-      grow_bounds(disk.center);
-      lights = add_surface_light(light_of(disk), made_of);
-    }
+    scene_bounds_.grow(bounds_.at(g).moved(matrix));
+    const uint32_t lights = copied_lights(matrix, geometry, materials_.at(material.value_or(geometry.material)));
     any = any || lights != none;
     lights_of_instance_.push_back(lights);
   }
   if (any) return first;
   lights_of_instance_.resize(first);
   return none;
+}
+
+uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const GeometryRecord& geometry,
+                                     const MaterialRecord& material) {
+  if (material.emission.index == none) return none;
+  const uint32_t* parameters = pool_.words().data() + geometry.shape.offset;
+  if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
+    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Sphere*>(parameters))), material);
+  }
+  if (geometry.shape.tag == tag_of<Disk>(Shapes{})) {
+    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Disk*>(parameters))), material);
+  }
+  const Mesh& mesh = *reinterpret_cast<const Mesh*>(parameters);
+  const auto* positions = reinterpret_cast<const float*>(bulk_.at(mesh.positions.section - 1).data);
+  const auto* indices = reinterpret_cast<const uint32_t*>(bulk_.at(mesh.indices.section - 1).data);
+  MeshArrays world;
+  world.positions.assign(positions, positions + mesh.positions.count);
+  world.indices.assign(indices, indices + mesh.indices.count);
+  move_mesh(matrix, world);
+  return add_mesh_lights(world, material);
 }
 
 void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission) {

@@ -12,6 +12,7 @@
 #include "kernels/geometry/shapes.h"
 #include "kernels/integrator/list.h"
 #include "lower/block.h"
+#include "lower/bounds.h"
 #include "lower/lights.h"
 #include "lower/parameters.h"
 #include "lower/spectra.h"
@@ -51,7 +52,9 @@ class SceneBuilder {
   Block finish();
 
  private:
-  uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, bool prototype);
+  uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds, bool prototype);
+  // The lights of an instance's copy of a geometry, or none.
+  uint32_t copied_lights(const Matrix& matrix, const GeometryRecord& geometry, const MaterialRecord& material);
   // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
   uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material);
   template <class Shape>
@@ -59,7 +62,6 @@ class SceneBuilder {
   template <class L>
   uint32_t add_surface_light(const L& light, const MaterialRecord& material);
   uint32_t instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material);
-  void grow_bounds(Vec3 point);
   float scene_radius() const;
 
   SpectrumPool spectra_;
@@ -71,8 +73,9 @@ class SceneBuilder {
   std::vector<InstanceRecord> instances_;
   std::vector<uint32_t> light_of_primitive_;
   std::vector<uint32_t> lights_of_instance_;
-  std::vector<Section> bulk_;  // sections 1, 2, ...
-  Vec3 low_{infinity, infinity, infinity}, high_{-infinity, -infinity, -infinity};
+  std::vector<Section> bulk_;   // sections 1, 2, ...
+  std::vector<Bounds> bounds_;  // of each geometry, in its own space
+  Bounds scene_bounds_;
 };
 
 }  // namespace accuray
