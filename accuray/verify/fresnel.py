@@ -133,6 +133,26 @@ def _slabs() -> list[Case]:
     return rows
 
 
+def _absorbing_slabs() -> list[Case]:
+    """Dyed glass of optical depth 1/2 straight through: Beer's law on every passage between the interfaces."""
+    thickness = 1e-3
+    plate = slab(INDEX, thickness, transmission_color=math.exp(-0.5), transmission_depth=thickness)
+    behind = assemble([*plate, _lid(-0.05, UP, lamp())])
+    before = assemble([*plate, _lid(0.1, DOWN, lamp())])
+    rows = []
+    for degrees in (0.0, 45.0):
+        theta = math.radians(degrees)
+        way = 1.0 / math.sqrt(1.0 - (math.sin(theta) / INDEX) ** 2)
+        transmitted, reflected = optics.absorbing_slab(optics.fresnel(theta, INDEX), math.exp(-0.5 * way))
+        source = "Beer 1852 and Stokes 1862, unpolarised interfaces"
+        rays = meeting_origin(theta)
+        sentence = f"Dyed glass at {degrees:g} degrees transmits"
+        rows.append(_case(f"dyed-slab-T-{degrees:g}", sentence, source, transmitted, behind, rays))
+        sentence = f"Dyed glass at {degrees:g} degrees reflects"
+        rows.append(_case(f"dyed-slab-R-{degrees:g}", sentence, source, reflected, before, rays))
+    return rows
+
+
 def _shift() -> list[Case]:
     """A thick slab moves an oblique beam sideways: the share of a fan of rays that still meets a half-plane lamp.
 
@@ -188,5 +208,5 @@ def _metals() -> list[Case]:
 
 def cases() -> list[Case]:
     """All cases of this chapter."""
-    groups = (_reflectances, _radiance_scaling, _slabs, _shift, _glasses, _metals)
+    groups = (_reflectances, _radiance_scaling, _slabs, _absorbing_slabs, _shift, _glasses, _metals)
     return [case for group in groups for case in group()]

@@ -39,6 +39,13 @@ def slab_transmittance_in_nature(theta: float, index: float) -> float:
     return 0.5 * sum(slab_transmittance(r) for r in fresnel_pair(theta, index))
 
 
+def absorbing_slab(reflectance: float, share: float) -> tuple[float, float]:
+    """(transmittance, reflectance) of a slab that lets `share` through on one passage, all internal reflections."""
+    series = 1.0 / (1.0 - (reflectance * share) ** 2)
+    transmitted = (1.0 - reflectance) ** 2 * share * series
+    return transmitted, reflectance + (1.0 - reflectance) ** 2 * share**2 * reflectance * series
+
+
 def plates_transmittance(reflectance: float, plates: int) -> float:
     """A pile of lossless plates with gaps between them (Stokes 1862)."""
     return (1.0 - reflectance) / (1.0 + (2 * plates - 1) * reflectance)

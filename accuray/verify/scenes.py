@@ -64,9 +64,9 @@ def metal(name: str) -> Table:
     return {"type": "conductor", "metal": name}
 
 
-def glass(ior: Any) -> Table:
+def glass(ior: Any, **more: Any) -> Table:
     """A smooth dielectric; `ior` is the index inside relative to outside."""
-    return {"type": "dielectric", "ior": ior}
+    return {"type": "dielectric", "ior": ior, **more}
 
 
 def sphere(center: Sequence[float], radius: float, material: Table) -> Solid:
@@ -119,11 +119,11 @@ def box(materials: Mapping[str, Table] | Table, size: float = 1.0) -> list[Solid
     return sides
 
 
-def slab(ior: Any, thickness: float, top: float = 0.0, size: float = 10.0) -> list[Solid]:
+def slab(ior: Any, thickness: float, top: float = 0.0, size: float = 10.0, **more: Any) -> list[Solid]:
     """A horizontal plate: two interfaces whose fronts are outside, the upper one at the height `top`."""
     return [
-        square((0.0, top, 0.0), (0.0, 1.0, 0.0), size, glass(ior)),
-        square((0.0, top - thickness, 0.0), (0.0, -1.0, 0.0), size, glass(ior)),
+        square((0.0, top, 0.0), (0.0, 1.0, 0.0), size, glass(ior, **more)),
+        square((0.0, top - thickness, 0.0), (0.0, -1.0, 0.0), size, glass(ior, **more)),
     ]
 
 

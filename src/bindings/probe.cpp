@@ -38,7 +38,7 @@ void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<fl
   const Tagged bsdf = view.materials[material].bsdf;
   dispatch(Bsdfs{}, bsdf.tag, [&](auto type) {
     const Wavelengths wl = carried(wavelengths);
-    fn(view.as<typename decltype(type)::type>(bsdf).at({view, wl, middle}));
+    fn(view.as<typename decltype(type)::type>(bsdf).at({view, wl, middle, lanes(1.0f)}));
     return true;
   });
 }

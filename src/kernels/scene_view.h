@@ -11,7 +11,7 @@
 
 namespace accuray {
 
-constexpr uint32_t block_version = 2;
+constexpr uint32_t block_version = 3;
 constexpr uint32_t lambda_guide_size = 512;
 
 template <class T>
@@ -27,8 +27,17 @@ struct Tagged {
   uint32_t offset;
 };
 
+// What fills a closed body of a dielectric.
+struct InteriorRecord {
+  SpectrumRef ior;
+  SpectrumRef color;  // share of the light that is left after 1 / per_depth
+  float per_depth;    // 1/m; 0: clear
+  uint32_t priority;  // where bodies overlap the higher fills; 0: ior is relative to whatever is around
+};
+
 struct MaterialRecord {
   Tagged bsdf;
+  uint32_t interior;  // none: not the surface of a dielectric body
   SpectrumRef emission;  // none: does not emit
   uint32_t emits_both_sides;
   uint32_t reads_texture_point;  // it is textured, or its BSDF is oriented
@@ -64,6 +73,7 @@ struct Root {
   uint32_t reserved[3];
   Tagged camera, filter, integrator;
   Slice<MaterialRecord> materials;
+  Slice<InteriorRecord> interiors;
   Slice<GeometryRecord> geometries;
   Slice<InstanceRecord> instances;
   Slice<LightRecord> lights;
@@ -82,6 +92,7 @@ struct SceneView {
   const Root* root;
   const uint8_t* const* sections;
   const MaterialRecord* materials;
+  const InteriorRecord* interiors;
   const GeometryRecord* geometries;
   const InstanceRecord* instances;
   const LightRecord* lights;
@@ -112,6 +123,7 @@ struct SceneView {
     view.sections = section_bases;
     const Root& root = *view.root;
     view.materials = view.at(root.materials);
+    view.interiors = view.at(root.interiors);
     view.geometries = view.at(root.geometries);
     view.instances = view.at(root.instances);
     view.lights = view.at(root.lights);

@@ -68,8 +68,25 @@ uint32_t SceneBuilder::add_material(std::string_view type, const Values& values,
   const Tagged bsdf = lower_type(Bsdfs{}, type, values, pool_);
   const bool oriented =
       dispatch(Bsdfs{}, bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::oriented; }; });
-  materials_.push_back({bsdf, {emits ? emission->index : none}, both_sides ? 1u : 0u, oriented ? 1u : 0u});
+  materials_.push_back(
+      {bsdf, add_interior(values), {emits ? emission->index : none}, both_sides ? 1u : 0u, oriented ? 1u : 0u});
   return static_cast<uint32_t>(materials_.size() - 1);
+}
+
+uint32_t SceneBuilder::add_interior(const Values& values) {
+  if (!values.contains("priority")) return none;
+  const bool coloured = values.contains("transmission_color");
+  if (coloured != values.contains("transmission_depth")) {
+    throw std::invalid_argument("transmission_color and transmission_depth go together: one is missing");
+  }
+  InteriorRecord interior{std::get<SpectrumRef>(value_of(values, "ior")), {none}, 0.0f, 0};
+  interior.priority = static_cast<uint32_t>(number_of(values, "priority"));
+  if (coloured) {
+    interior.color = std::get<SpectrumRef>(value_of(values, "transmission_color"));
+    interior.per_depth = static_cast<float>(1.0 / number_of(values, "transmission_depth"));
+  }
+  interiors_.push_back(interior);
+  return static_cast<uint32_t>(interiors_.size() - 1);
 }
 
 float SceneBuilder::scene_radius() const {
@@ -271,6 +288,7 @@ Block SceneBuilder::finish() {
   }
   RootWriter writer;
   root_.materials = writer.append(materials_);
+  root_.interiors = writer.append(interiors_);
   root_.geometries = writer.append(geometries_);
   root_.instances = writer.append(instances_);
   root_.lights = writer.append(lights_.records());

@@ -55,6 +55,8 @@ class SceneBuilder {
   uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds, bool prototype);
   // The lights of an instance's copy of a geometry, or none.
   uint32_t copied_lights(const Matrix& matrix, const GeometryRecord& geometry, const MaterialRecord& material);
+  // What fills a body of a material with these values; none if it is no dielectric.
+  uint32_t add_interior(const Values& values);
   // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
   uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material);
   template <class Shape>
@@ -69,6 +71,7 @@ class SceneBuilder {
   LightTable lights_;
   Root root_{};
   std::vector<MaterialRecord> materials_;
+  std::vector<InteriorRecord> interiors_;
   std::vector<GeometryRecord> geometries_;
   std::vector<InstanceRecord> instances_;
   std::vector<uint32_t> light_of_primitive_;

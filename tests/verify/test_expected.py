@@ -149,6 +149,15 @@ def test_diffuse_reflectance() -> None:
     close(optics.diffuse_reflectance_inside(1.5), reference["internal"], 1e-8)
 
 
+def test_absorbing_slabs() -> None:
+    normal = figures()["absorbing_slab_n1.5_normal_tau0.5"]
+    transmitted, reflected = expected()["C4.dyed-slab-T-0"][0], expected()["C4.dyed-slab-R-0"][0]
+    close(transmitted, normal["T"])
+    close(reflected, normal["R"])
+    oblique = figures()["absorbing_slab_n1.5_45deg_sigma0.5_d1"]
+    close(expected()["C4.dyed-slab-T-45"][0], oblique["T_unpol_renderer"])
+
+
 def test_lateral_shift() -> None:
     reference = figures()["absorbing_slab_n1.5_45deg_sigma0.5_d1"]
     close(optics.lateral_shift(1.0, math.radians(45), 1.5), reference["lateral_offset_d1"])

@@ -24,6 +24,7 @@ struct ShadingPoint {
   const SceneView& scene;
   const Wavelengths& wl;
   TexturePoint where;  // set for materials whose record says that they read it
+  Spectrum exterior;   // index of refraction on the front side of a dielectric body
 
   Spectrum spectrum(SpectrumRef ref) const { return scene.spectrum(ref, wl); }
 };

@@ -49,21 +49,46 @@ struct Dielectric {
       "dispersion.";
   static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
-    return param_list(Param{.name = "ior",
-                            .kind = Kind::spectrum,
-                            .doc =
-                                "Index behind the surface relative to the index before it: a number, a named glass "
-                                "(N-BK7, SF11, water_20C, diamond, ...), Sellmeier or Cauchy coefficients, or a table.",
-                            .preset = "1.5",
-                            .low = 0.05,
-                            .high = 20,
-                            .unit = "1",
-                            .role = "index",
-                            .animatable = true,
-                            .member = ACCURAY_OFFSET_OF(Dielectric, ior)});
+    return param_list(
+        Param{.name = "ior",
+              .kind = Kind::spectrum,
+              .doc = "Index behind the surface relative to the index before it, or absolute if there is a "
+                     "priority: a number, a named glass (N-BK7, SF11, water_20C, diamond, ...), Sellmeier or "
+                     "Cauchy coefficients, or a table.",
+              .preset = "1.5",
+              .low = 0.05,
+              .high = 20,
+              .unit = "1",
+              .role = "index",
+              .animatable = true,
+              .member = ACCURAY_OFFSET_OF(Dielectric, ior)},
+        Param{.name = "transmission_color",
+              .kind = Kind::spectrum,
+              .doc = "Share of the light that is left after transmission_depth inside the body, which "
+                     "must be closed.",
+              .low = 0,
+              .high = 1,
+              .unit = "1",
+              .role = "reflectance",
+              .animatable = true},
+        Param{.name = "transmission_depth",
+              .kind = Kind::real,
+              .doc = "Way inside the body after which transmission_color is left.",
+              .low = 1e-12,
+              .unit = "m",
+              .animatable = true},
+        Param{.name = "priority",
+              .kind = Kind::integer,
+              .doc = "Of overlapping bodies the one with the highest priority fills the place. With 0 the "
+                     "surface is an interface by itself, and ior relative to whatever is around it.",
+              .preset = "0",
+              .low = 0,
+              .high = 1e6});
   }
   DielectricAt at(const ShadingPoint& p) const {
-    return {p.spectrum(ior), p.scene.spectra[ior.index].form != SpectrumForm::constant, p.wl.hero_only};
+    const Spectrum relative = p.spectrum(ior) / p.exterior;
+    const bool disperses = relative[0] != relative[1] || relative[0] != relative[2] || relative[0] != relative[3];
+    return {relative, disperses, p.wl.hero_only};
   }
 };
 

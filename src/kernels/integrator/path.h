@@ -60,6 +60,10 @@ struct PathTracing {
   template <Accel A>
   void shade_surface(const SceneView& scene, const A& accel, Path& path) const {
     const Surface surface = surface_at(scene, path.ray, path.hit);
+    const MaterialRecord& material = scene.materials[surface.material];
+    travel(scene, material, surface, path);
+    const uint32_t exterior = exterior_at(scene, material, surface, path);
+    if (pass_hidden(scene, material, surface, exterior, path)) return;
     const Vec3 toward_viewer = -path.ray.direction;
 
     // Emission met by the path itself.
@@ -77,14 +81,13 @@ struct PathTracing {
     const f32x4 u_direction = path.sampler.draw(direction_set(path));
     const Vec2 u_light = {u_direction[2], u_direction[3]};
     const Vec2 u_bsdf = {u_direction[0], u_direction[1]};
-    const MaterialRecord& material = scene.materials[surface.material];
     const f32x4 u_decision =
         needs_decisions(scene, material, path) ? path.sampler.draw(decision_set(path)) : lanes(0.0f);
     const float u_choice = u_decision[0];
     const float u_lobe = u_decision[1];
     const float u_roulette = u_decision[2];
 
-    const ShadingPoint point = shading_point(scene, material, path, surface);
+    const ShadingPoint point = shading_point(scene, material, path, surface, exterior);
     const Frame frame = shading_frame(material, surface, point);
     const Vec3 wo = frame.to_local(toward_viewer);
     path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
@@ -92,11 +95,11 @@ struct PathTracing {
       const auto bsdf = scene.as<Bsdf>(material.bsdf).at(point);
       if constexpr (!decltype(bsdf)::delta_only) {
         if (can_afford(path, lobe_diffuse)) {
-          sample_light(scene, accel, strategy, surface, frame, bsdf, wo, u_light, u_choice, path);
+          sample_light(scene, accel, strategy, material, surface, frame, bsdf, wo, u_light, u_choice, path);
         }
       }
       const BsdfSample sample = bsdf.sample(wo, u_lobe, u_bsdf);
-      return can_afford(path, sample.lobe) && scatter(surface, frame, sample, path);
+      return can_afford(path, sample.lobe) && scatter(material, surface, frame, sample, path);
     });
     if (path.alive) path.alive = survives(path, static_cast<uint32_t>(roulette_depth), u_roulette);
   }

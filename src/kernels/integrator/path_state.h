@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/bsdf/bsdf.h"
+#include "kernels/integrator/interior.h"
 #include "kernels/light/light.h"
 #include "kernels/sampling/sobol.h"
 #include "kernels/spectrum/sensor.h"
@@ -22,7 +23,7 @@ struct Path {
   float alpha;         // 1 where the camera saw something
   uint32_t depth;      // scattering events so far
   uint32_t spent;      // of the weighted depth budget
-  uint32_t medium;     // index of the medium around the ray; none: vacuum
+  Interiors inside;    // the bodies that the ray is in
   bool alive;
 };
 
@@ -33,7 +34,7 @@ inline uint32_t direction_set(const Path& path) { return 2u + 2u * path.depth; }
 inline uint32_t decision_set(const Path& path) { return 3u + 2u * path.depth; }
 
 inline Path start_path(const Ray& ray, const Wavelengths& wl, const Sampler& sampler) {
-  return {ray, Hit{}, wl, lanes(1.0f), lanes(0.0f), sampler, ray.origin, {0, 0, 0}, 0.0f, 1.0f, 1.0f, 0, 0, none, true};
+  return {ray, Hit{}, wl, lanes(1.0f), lanes(0.0f), sampler, ray.origin, {0, 0, 0}, 0.0f, 1.0f, 1.0f, 0, 0, {}, true};
 }
 
 }  // namespace accuray

@@ -34,20 +34,23 @@ struct Reference {
         return;
       }
       const Surface surface = surface_at(scene, path.ray, path.hit);
+      const MaterialRecord& material = scene.materials[surface.material];
+      travel(scene, material, surface, path);
+      const uint32_t exterior = exterior_at(scene, material, surface, path);
+      if (pass_hidden(scene, material, surface, exterior, path)) continue;
       const Vec3 toward_viewer = -path.ray.direction;
       if (surface.light != none) path.radiance += path.throughput * emitted(scene, surface, toward_viewer, path.wl);
       if (max_depth >= 0 && path.depth >= static_cast<uint32_t>(max_depth)) return;
       const f32x4 u = path.sampler.draw(direction_set(path));
       const f32x4 u_decision = path.sampler.draw(decision_set(path));
-      const MaterialRecord& material = scene.materials[surface.material];
-      const ShadingPoint point = shading_point(scene, material, path, surface);
+      const ShadingPoint point = shading_point(scene, material, path, surface, exterior);
       const Frame frame = shading_frame(material, surface, point);
       const Vec3 wo = frame.to_local(toward_viewer);
       path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
         using Bsdf = typename decltype(type)::type;
         const auto bsdf = scene.as<Bsdf>(material.bsdf).at(point);
-        add_points(scene, accel, surface, frame, bsdf, wo, path);
-        return scatter(surface, frame, bsdf.sample(wo, u_decision[1], {u[2], u[3]}), path);
+        add_points(scene, accel, material, surface, frame, bsdf, wo, path);
+        return scatter(material, surface, frame, bsdf.sample(wo, u_decision[1], {u[2], u[3]}), path);
       });
       if (path.alive && path.depth >= 8) path.alive = survives(path, 8, u_decision[2]);
     }
@@ -55,8 +58,8 @@ struct Reference {
 
  private:
   template <Accel A, class BsdfAt>
-  static void add_points(const SceneView& scene, const A& accel, const Surface& surface, const Frame& frame,
-                         const BsdfAt& bsdf, Vec3 wo, Path& path) {
+  static void add_points(const SceneView& scene, const A& accel, const MaterialRecord& material, const Surface& surface,
+                         const Frame& frame, const BsdfAt& bsdf, Vec3 wo, Path& path) {
     for (uint32_t i = 0; i < scene.root->lights.count; ++i) {
       const LightRecord& record = scene.lights[i];
       if (!is_delta_light(record.light.tag)) continue;
@@ -64,8 +67,9 @@ struct Reference {
       const Vec3 wi = frame.to_local(light.wi);
       if ((dot(surface.normal, light.wi) > 0.0f) != (wi.z > 0.0f)) continue;
       const float share = visible_share(accel, surface, light, path.ray.time);
-      path.radiance +=
-          path.throughput * bsdf.eval(wo, wi) * scene.spectrum(record.emission, path.wl) * (light.scale * share);
+      const Spectrum arriving = scene.spectrum(record.emission, path.wl) * (light.scale * share) *
+                                share_towards(scene, material, surface, light, path);
+      path.radiance += path.throughput * bsdf.eval(wo, wi) * arriving;
     }
   }
 };

@@ -3,7 +3,7 @@
 
 #include "kernels/accel/accel.h"
 #include "kernels/bsdf/list.h"
-#include "kernels/integrator/path_state.h"
+#include "kernels/integrator/bodies.h"
 #include "kernels/light/select.h"
 
 namespace accuray {
@@ -19,9 +19,11 @@ inline float mis_weight(float pdf, float other) {
 
 // Where the BSDF of a hit reads its values, and the frame that its directions are in.
 inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& material, const Path& path,
-                                  const Surface& surface) {
-  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}};
-  return {scene, path.wl, texture_point(scene, path.hit, surface)};
+                                  const Surface& surface, uint32_t exterior) {
+  const Spectrum before =
+      material.interior == none ? lanes(1.0f) : exterior_ior(scene, material.interior, exterior, path.wl);
+  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before};
+  return {scene, path.wl, texture_point(scene, path.hit, surface), before};
 }
 inline Frame shading_frame(const MaterialRecord& material, const Surface& surface, const ShadingPoint& p) {
   return material.reads_texture_point == 0 ? Frame::around(surface.shading)
@@ -79,10 +81,21 @@ inline float visible_share(const A& accel, const Surface& surface, const LightSa
   return accel.transmittance({from, to - from, one_minus_epsilon, time});
 }
 
+// Share of a light sample that the body around it lets through, on whichever side of the surface it comes from.
+inline Spectrum share_towards(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
+                              const LightSample& light, const Path& path) {
+  if (light.distance == infinity) return lanes(1.0f);
+  const bool crosses = (dot(surface.normal, light.wi) > 0.0f) == leaves(path, surface);
+  const uint32_t filling =
+      crosses && material.interior != none ? exterior_at(scene, material, surface, path) : path.inside.filling(scene);
+  return share_after(scene, filling, light.distance, path.wl);
+}
+
 // Step sample_light: next-event estimation at a vertex whose BSDF values are `bsdf`.
 template <Accel A, class BsdfAt>
-inline void sample_light(const SceneView& scene, const A& accel, Strategy strategy, const Surface& surface,
-                         const Frame& frame, const BsdfAt& bsdf, Vec3 wo, Vec2 u, float u_choice, Path& path) {
+inline void sample_light(const SceneView& scene, const A& accel, Strategy strategy, const MaterialRecord& material,
+                         const Surface& surface, const Frame& frame, const BsdfAt& bsdf, Vec3 wo, Vec2 u,
+                         float u_choice, Path& path) {
   const LightChoice choice = choose_light(scene, surface.point, surface.shading, path.ray.time, u_choice);
   if (choice.light == none) return;
   const LightSample light = sample_light(scene, choice.light, surface.point, u);
@@ -100,8 +113,9 @@ inline void sample_light(const SceneView& scene, const A& accel, Strategy strate
   const float weight = delta || strategy == Strategy::light ? 1.0f : mis_weight(pdf, bsdf.pdf(wo, wi));
   const float share = visible_share(accel, surface, light, path.ray.time);
   if (share == 0.0f) return;
-  const Spectrum emission = scene.spectrum(record.emission, path.wl);
-  path.radiance = fma(path.throughput * f, emission * (light.scale * weight * share / pdf), path.radiance);
+  Spectrum arriving = scene.spectrum(record.emission, path.wl) * (light.scale * weight * share / pdf);
+  if (path.inside.count != 0) arriving *= share_towards(scene, material, surface, light, path);
+  path.radiance = fma(path.throughput * f, arriving, path.radiance);
 }
 
 // What a lobe costs of the weighted depth budget (AccuRay report 2014).
@@ -111,7 +125,8 @@ inline uint32_t depth_cost(uint32_t lobe) {
 }
 
 // Continues the path along a BSDF sample; false if there is nothing to continue.
-inline bool scatter(const Surface& surface, const Frame& frame, const BsdfSample& sample, Path& path) {
+inline bool scatter(const MaterialRecord& material, const Surface& surface, const Frame& frame,
+                    const BsdfSample& sample, Path& path) {
   const Vec3 wi = frame.to_world(sample.wi);
   const bool same_side = (dot(surface.normal, wi) > 0.0f) == (sample.wi.z > 0.0f);
   if (!same_side || is_black(sample.weight)) return false;
@@ -120,6 +135,7 @@ inline bool scatter(const Surface& surface, const Frame& frame, const BsdfSample
     path.throughput = keep_hero(path.throughput);
     path.wl.hero_only = true;
   }
+  if ((sample.lobe & lobe_transmission) != 0) cross_surface(material, surface, path);
   path.eta_scale *= sample.eta_scale;
   path.bsdf_pdf = sample.pdf;
   path.origin = surface.point;
