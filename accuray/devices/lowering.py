@@ -53,9 +53,9 @@ class _Lowering:
         self._add_shapes()
         for name, light in self.scene.lights.items():
             self._guard(f"lights.{name}", partial(self._add_light, light))
-        aspect = film["width"] / film["height"]
         camera, pixel_filter, integrator = self.scene.camera, self.scene.filter, self.scene.integrator
-        self._guard("camera", partial(builder.set_camera, camera["type"], self._values("camera", camera), aspect))
+        values = self._values("camera", camera)
+        self._guard("camera", partial(builder.set_camera, camera["type"], values, film["width"], film["height"]))
         builder.set_filter(pixel_filter["type"], self._values("filter", pixel_filter))
         builder.set_integrator(integrator["type"], self._values("integrator", integrator))
         builder.set_film(film["unit"], film["hide_environment"])
@@ -66,7 +66,8 @@ class _Lowering:
             return action()
         except ValueError as error:
             file = None if self.scene.path is None else str(self.scene.path)
-            raise SceneError(str(error), file=file, key=key) from error
+            problem, *parameter = error.args
+            raise SceneError(problem, file=file, key=".".join([key, *parameter])) from error
 
     def _values(self, family: str, table: Values) -> Values:
         """The numbers, vectors, choices and spectra of a table; the rest has no place in the kernels' structs."""

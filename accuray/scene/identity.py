@@ -3,7 +3,8 @@
 It covers every resolved value that changes a sample, so two scenes with the same identity have the same samples:
 units and defaults are applied, floats are written in hexadecimal, arrays and files count by content. Names of
 objects are part of it, because objects are lowered in the order of their names. Not part of it: samples per
-pixel, seed, exposure (except through ``film.unit``), white balance, file names, spelling, order, comments.
+pixel, seed, exposure by EV or by ISO and shutter (except through ``film.unit``), white balance, file names,
+spelling, order, comments.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from accuray.scene.spectrum import Spectrum
 if TYPE_CHECKING:
     from accuray.scene.scene import Scene
 
-DISPLAY_ONLY = {"film": ("exposure", "white_balance"), "render": ("spp", "seed")}
+DISPLAY_ONLY = {"film": ("exposure", "iso", "shutter", "white_balance"), "render": ("spp", "seed")}
 _FIELDS_OF_FORM = {
     "constant": ("value",),
     "rgb": ("rgb", "white"),

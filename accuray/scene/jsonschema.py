@@ -76,16 +76,18 @@ def _table(type_: Type, *, tagged: bool = False) -> Node:
     required += [param.name for param in type_.params if param.required]
     if required:
         node["required"] = required
-    sets = [_exactly_one(alternatives) for alternatives in type_.sets().values()]
+    sets = [_one_alternative(name, alternatives) for name, alternatives in type_.sets().items()]
     if sets:
         node["allOf"] = sets
     return node
 
 
-def _exactly_one(alternatives: dict[str, list[Param]]) -> Node:
-    """One alternative of a set is given whole and the others not at all; none, if one of them has defaults."""
+def _one_alternative(set_name: str, alternatives: dict[str, list[Param]]) -> Node:
+    """One alternative of a set is given whole and the others not at all; none, if one of them has defaults or may."""
     names = {name: [param.name for param in group] for name, group in alternatives.items()}
-    options = []
+    options: list[Node] = []
+    if set_name.endswith("?"):
+        options.append({"not": {"anyOf": [{"required": [name]} for members in names.values() for name in members]}})
     for name, group in alternatives.items():
         others = [other for key, members in names.items() if key != name for other in members]
         needed = [param.name for param in group if param.default is None]

@@ -63,19 +63,21 @@ def expect_table(value: Any, where: Where) -> dict[str, Any]:
 
 
 def _choose_alternatives(type_: Type, given: dict[str, Any], where: Where) -> dict[str, str]:
-    """Which alternative of each set holds: the one given, else the one that has a default."""
+    """Which alternative of each set holds: the one given, else the one that has a default, else ("") none."""
     chosen: dict[str, str] = {}
     for set_name, alternatives in type_.sets().items():
-        text = "exactly one of " + " | ".join(" with ".join(p.name for p in group) for group in alternatives.values())
+        optional = set_name.endswith("?")
+        count = "at most" if optional else "exactly"
+        text = f"{count} one of " + " | ".join(" with ".join(p.name for p in group) for group in alternatives.values())
         used = [name for name, group in alternatives.items() if any(param.name in given for param in group)]
         if len(used) > 1:
             names = [param.name for name in used for param in alternatives[name] if param.name in given]
             raise where.child(names[-1]).error(f"has `{names[0]}` and `{names[-1]}` at once", allowed=text)
         if not used:
             used = [name for name, group in alternatives.items() if any(param.default is not None for param in group)]
-        if not used:
+        if not used and not optional:
             raise where.error("lacks its " + set_name, allowed=text)
-        chosen[set_name] = used[0]
+        chosen[set_name] = used[0] if used else ""
     _check_companions(type_, given, chosen, where)
     return chosen
 

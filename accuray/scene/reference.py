@@ -142,7 +142,7 @@ def _default(param: Param) -> str:
     if param.required:
         return "required"
     if param.default is None:
-        return "one of a set" if param.group else ""
+        return "one of a set" if param.group and not param.set_name.endswith("?") else ""
     return f"`{_spelled(param.default)}`"
 
 
@@ -151,9 +151,8 @@ def _spelled(value: Any) -> str:
 
 
 def _doc(param: Param) -> str:
-    group = (
-        f" Exactly one alternative of *{param.set_name}* is given: this is *{param.alternative}*."
-        if param.group
-        else ""
-    )
+    group = ""
+    if param.group:
+        count = "At most" if param.set_name.endswith("?") else "Exactly"
+        group = f" {count} one alternative of *{param.set_name.rstrip('?')}* is given: this is *{param.alternative}*."
     return param.doc.replace("|", "\\|") + group

@@ -11,6 +11,7 @@ from typing import Any
 
 from accuray.scene import schema as schemas
 from accuray.scene.errors import Document, Source, Where
+from accuray.scene.exposure import resolve_exposure
 from accuray.scene.identity import scene_identity
 from accuray.scene.objects import expect_table, resolve_object, resolve_params
 from accuray.scene.paths import Confinement
@@ -88,10 +89,13 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     shapes = _named("shapes", schema.family("shape").types, scope)
     check_shapes(shapes, schema, top.child("shapes"))
     _check_spectra(scope)
+    camera = _single("camera", data, top.child("camera"), scope)
+    film["exposure"] = resolve_exposure(film, camera, top.child("film"))
+    film["unit"] = film_unit(film["unit"], film["exposure"])
     return Scene(
         film=film,
         filter=pixel_filter,
-        camera=_single("camera", data, top.child("camera"), scope),
+        camera=camera,
         integrator=_single("integrator", data, top.child("integrator"), scope),
         render=resolve_params(schema.family("render").header, _section("render", scope), top.child("render"), scope),
         materials=materials,
@@ -141,13 +145,12 @@ def _check_name(name: str, where: Where) -> None:
 
 
 def _film(scope: Scope) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The film, its fixed-point unit resolved to a power of two, and the pixel filter inside it."""
+    """The film, and the pixel filter inside it."""
     where = Where(scope.document, ("film",))
     given = dict(_section("film", scope))
     inner = {"filter": given.pop("filter")} if "filter" in given else {}
     pixel_filter = _single("filter", inner, where.child("filter"), scope)
     film = resolve_params(scope.schema.family("film").header, given, where, scope, other_keys=("filter",))
-    film["unit"] = film_unit(film["unit"], film["exposure"])
     return film, pixel_filter
 
 

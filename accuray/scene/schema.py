@@ -31,7 +31,7 @@ class Param:
 
     @property
     def set_name(self) -> str:
-        """Name of the "exactly one of" set, "" if the parameter stands alone."""
+        """Name of the "exactly one of" set, "" if the parameter stands alone; with a "?" where none may be given."""
         return self.group.partition(":")[0]
 
     @property

@@ -29,7 +29,8 @@ def types_of(tables: Table, *families: str) -> Iterator[tuple[str, Table]]:
 def alternatives(table: Table) -> list[frozenset[str]]:
     """Every choice of parameter names that satisfies the "exactly one of" groups of a type.
 
-    A group is written "set:alternative". Parameters outside groups are in every choice.
+    A group is written "set:alternative", or "set?:alternative" where none need be given. Parameters outside groups are
+    in every choice.
     """
     choices: list[frozenset[str]] = [frozenset(p["name"] for p in table["params"] if not p["group"])]
     sets: dict[str, dict[str, list[str]]] = {}
@@ -37,7 +38,9 @@ def alternatives(table: Table) -> list[frozenset[str]]:
         if p["group"]:
             name, _, alternative = p["group"].partition(":")
             sets.setdefault(name, {}).setdefault(alternative, []).append(p["name"])
-    for branches in sets.values():
+    for name, branches in sets.items():
+        if name.endswith("?"):
+            branches[""] = []
         choices = [base | frozenset(branch) for base in choices for branch in branches.values()]
     return choices
 

@@ -121,10 +121,10 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
           "type"_a, "values"_a, "emission"_a)
       .def(
           "set_camera",
-          [](SceneBuilder& b, const std::string& type, const nb::dict& values, double aspect) {
-            b.set_camera(type, to_values(values), aspect);
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, double width, double height) {
+            b.set_camera(type, to_values(values), {width, height});
           },
-          "type"_a, "values"_a, "aspect"_a)
+          "type"_a, "values"_a, "width"_a, "height"_a)
       .def(
           "set_filter",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values) {
@@ -144,6 +144,14 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
 }  // namespace
 
 void bind_lower(nb::module_& module) {
+  // ValueError(problem, key), so that Python can tell where the value was written.
+  nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const BadParameter& error) {
+      PyErr_SetObject(PyExc_ValueError, nb::make_tuple(error.what(), error.key()).ptr());
+    }
+  });
   nb::module_ lower = module.def_submodule("lower", "From resolved descriptions to the lowered scene.");
   nb::class_<SpectrumRef>(lower, "SpectrumRef");
   nb::class_<Block>(lower, "Block")

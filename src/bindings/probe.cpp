@@ -195,6 +195,31 @@ nb::object filter_sample(const LoadedScene& scene, const Column<float>& u) {
   return to_numpy(std::move(offsets), 0);
 }
 
+// Rays of the scene's camera: for points of the film, (0, 0) to (1, 1), and of the lens's unit square.
+nb::dict camera_ray(const LoadedScene& scene, const Rows<float, 2>& film, const Rows<float, 2>& lens) {
+  require_rows(film.shape(0), lens.shape(0));
+  const SceneView& view = scene.accel.view();
+  std::vector<float> origins, directions;
+  std::vector<uint8_t> seen;
+  dispatch(Cameras{}, view.root->camera.tag, [&](auto type) {
+    const auto& camera = view.as<typename decltype(type)::type>(view.root->camera);
+    for (size_t i = 0; i < film.shape(0); ++i) {
+      const float* f = film.data() + 2 * i;
+      const float* l = lens.data() + 2 * i;
+      const CameraRay r = camera.ray({f[0], f[1]}, {l[0], l[1]}, 0.0f);
+      put(origins, r.ray.origin);
+      put(directions, r.ray.direction);
+      seen.push_back(r.seen ? 1 : 0);
+    }
+    return true;
+  });
+  nb::dict result;
+  result["origin"] = to_numpy(std::move(origins), 3);
+  result["direction"] = to_numpy(std::move(directions), 3);
+  result["seen"] = to_numpy(std::move(seen), 0);
+  return result;
+}
+
 // Points of the sampler: set `set` of samples first ... first + count - 1 under a key.
 nb::object sampler_points(uint32_t key, uint32_t set, uint32_t first, uint32_t count) {
   std::vector<float> points;
@@ -254,6 +279,7 @@ void bind_probe(nb::module_& module) {
   probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false);
   probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a);
   probe.def("filter_sample", &filter_sample, "scene"_a, "u"_a);
+  probe.def("camera_ray", &camera_ray, "scene"_a, "film"_a, "lens"_a);
   probe.def("sampler_points", &sampler_points, "key"_a, "set"_a, "first"_a, "count"_a);
   probe.def("quantized_sums", &quantized_sums, "value"_a, "step"_a, "key"_a, "count"_a);
   probe.def("function", &functions, "name"_a, "x"_a, "An elementary function of kernels/math at each x.");

@@ -95,7 +95,7 @@ nb::dict tables() {
   families["bsdf"] = family(Bsdfs{}, nb::list());
   families["light"] = family(NamedLights{}, nb::list());
   families["shape"] = family(Shapes{}, params_of<ShapeCommon>());
-  families["camera"] = family(Cameras{}, nb::list());
+  families["camera"] = family(NamedCameras{}, params_of<CameraCommon>());
   families["filter"] = family(Filters{}, nb::list());
   families["integrator"] = family(Integrators{}, nb::list());
   families["material"] = family(TypeList<>{}, params_of<MaterialCommon>());

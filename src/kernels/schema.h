@@ -28,7 +28,7 @@ struct Param {
   const char* unit = "";
   const char* choices = "";  // words separated by '|'
   const char* role = "";     // reflectance, emission, index; material, shape; shape of an array
-  const char* group = "";    // "set:alternative": exactly one alternative of a set is given
+  const char* group = "";    // "set:alternative": exactly one alternative of a set is given; "set?:...": at most one
   bool required = false;
   bool texturable = false;
   bool animatable = false;

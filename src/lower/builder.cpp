@@ -225,37 +225,8 @@ void SceneBuilder::add_light(std::string_view type, const Values& values, Spectr
   });
 }
 
-void SceneBuilder::set_camera(std::string_view type, const Values& values, double aspect) {
-  if (type != Perspective::name) throw std::invalid_argument("no camera is called '" + std::string(type) + "'");
-  const auto position = vec_of(values, "position");
-  const auto look_at = vec_of(values, "look_at");
-  const auto up = vec_of(values, "up");
-  const auto unit = [](std::array<double, 3> v) {
-    const double l = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (!(l > 0.0)) throw std::invalid_argument("look_at must differ from position, and up from the direction of view");
-    return std::array<double, 3>{v[0] / l, v[1] / l, v[2] / l};
-  };
-  const auto crossed = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
-    return std::array<double, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  };
-  const auto backward = unit({position[0] - look_at[0], position[1] - look_at[1], position[2] - look_at[2]});
-  const auto right = unit(crossed(unit(up), backward));
-  double half = 0.0;
-  if (values.contains("focal_length")) {
-    half = 0.5 * number_of(values, "film_size") / number_of(values, "focal_length");
-  } else {
-    const SinCosDouble angle = sincos(0.5 * number_of(values, "fov"));
-    half = angle.sin / angle.cos;
-  }
-  const bool vertical = number_of(values, "fov_axis") == 0.0;
-  Perspective camera{};
-  camera.position = to_vec3(position);
-  camera.right = to_vec3(right);
-  camera.up = to_vec3(crossed(backward, right));
-  camera.backward = to_vec3(backward);
-  camera.half_height = static_cast<float>(vertical ? half : half / aspect);
-  camera.half_width = static_cast<float>(vertical ? half * aspect : half);
-  root_.camera = {tag_of<Perspective>(Cameras{}), pool_.add(camera)};
+void SceneBuilder::set_camera(std::string_view type, const Values& values, const Picture& picture) {
+  root_.camera = lower_camera(type, values, picture, pool_);
 }
 
 void SceneBuilder::set_filter(std::string_view type, const Values& values) {

@@ -7,12 +7,12 @@
 #include <optional>
 #include <string_view>
 
-#include "kernels/camera/list.h"
 #include "kernels/film/filter.h"
 #include "kernels/geometry/shapes.h"
 #include "kernels/integrator/list.h"
 #include "lower/block.h"
 #include "lower/bounds.h"
+#include "lower/cameras.h"
 #include "lower/lights.h"
 #include "lower/parameters.h"
 #include "lower/spectra.h"
@@ -44,7 +44,7 @@ class SceneBuilder {
                     std::optional<uint32_t> material);
   void add_light(std::string_view type, const Values& values, SpectrumRef emission);
 
-  void set_camera(std::string_view type, const Values& values, double aspect);
+  void set_camera(std::string_view type, const Values& values, const Picture& picture);
   void set_filter(std::string_view type, const Values& values);
   void set_integrator(std::string_view type, const Values& values);
   void set_film(double step, bool hide_environment);

@@ -20,6 +20,16 @@ namespace accuray {
 using Value = std::variant<double, std::array<double, 3>, SpectrumRef>;
 using Values = std::map<std::string, Value, std::less<>>;
 
+// What is wrong with the value of a parameter, and the parameter's name.
+class BadParameter : public std::invalid_argument {
+ public:
+  BadParameter(std::string key, const std::string& problem) : std::invalid_argument(problem), key_(std::move(key)) {}
+  const std::string& key() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
 inline const Value& value_of(const Values& values, std::string_view name) {
   const auto found = values.find(name);
   if (found == values.end()) throw std::invalid_argument("missing value of parameter '" + std::string(name) + "'");

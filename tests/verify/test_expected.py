@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from accuray.verify import all_cases, colorimetry, form_factors, optics
+from accuray.verify import all_cases, cameras, colorimetry, form_factors, optics
 
 EXACT = 1e-9
 
@@ -238,3 +238,27 @@ def test_every_case_is_well_formed() -> None:
         assert case.source
         assert all(map(math.isfinite, case.expected))
         assert case.probe.start >= 32
+
+
+def test_the_thin_lens() -> None:
+    lens = figures()["thin_lens_f50_N2_focus2000"]
+    close(1e3 * cameras.image_distance(2.0), lens["image_dist_mm"])
+    close(1e3 * cameras.blur_diameter(2.0, 4.0), lens["coc_obj4000_mm"])
+    close(1e3 * cameras.blur_diameter(2.0, 1.0), lens["coc_obj1000_mm"])
+    close(1e3 * cameras.blur_diameter(2.0, 1e12), lens["coc_inf_mm"])
+    second, fourth = cameras.polygon_moments(math.inf, 1.0)
+    close(math.sqrt(second), lens["rms_radius_factor"])
+    close(fourth, 1.0 / 3.0)
+
+
+def test_moments_of_polygons() -> None:
+    close(cameras.polygon_moments(4, math.sqrt(0.5))[0], 1.0 / 6.0)
+    close(cameras.polygon_moments(4, math.sqrt(0.5))[1], 7.0 / 180.0)
+    close(cameras.polygon_moments(5, 1.0)[0], (2.0 + math.cos(math.radians(72.0))) / 6.0)
+
+
+def test_projected_caps_on_the_axis() -> None:
+    alpha = math.radians(20.0)
+    close(cameras.ellipse_area(0.0, alpha), math.pi * math.tan(alpha) ** 2)
+    close(cameras.equidistant_share(math.pi / 2, 1e-3, math.pi / 2), math.pi * 1e-6 * math.pi / 2 / math.pi**2, 1e-5)
+    close(cameras.equirectangular_share(math.pi / 2, 1e-3), math.pi * 1e-6 / (2.0 * math.pi**2), 1e-5)

@@ -28,6 +28,11 @@ ALWAYS = (
     "C4.slab-T-60",
     "C4.into-glass-30",
     "C4.metal-Au-60",
+    "C7.blur-far",
+    "C7.edge-in-focus",
+    "C7.ball-off-axis",
+    "C7.panorama-side",
+    "C7.fisheye-off-axis",
     "C8.xy-D65",
     "C8.red-lamp-xyz",
 )

@@ -36,10 +36,17 @@ inline Path generate(const SceneView& scene, const Request& request, uint32_t x,
   const Vec2 film = {(static_cast<float>(x) + 0.5f + offset.x) / static_cast<float>(request.width),
                      (static_cast<float>(y) + 0.5f + offset.y) / static_cast<float>(request.height)};
   const float time = u[3];
-  const Ray ray = dispatch(Cameras{}, scene.root->camera.tag, [&](auto type) {
-    return scene.as<typename decltype(type)::type>(scene.root->camera).ray(film, {0.5f, 0.5f}, time);
+  const CameraRay seen = dispatch(Cameras{}, scene.root->camera.tag, [&](auto type) {
+    using Camera = typename decltype(type)::type;
+    const f32x4 u_lens = Camera::has_lens ? sampler.draw(lens_set) : lanes(0.5f);
+    return scene.as<Camera>(scene.root->camera).ray(film, {u_lens[0], u_lens[1]}, time);
   });
-  return start_path(ray, wl, sampler);
+  Path path = start_path(seen.ray, wl, sampler);
+  if (!seen.seen) {
+    path.alive = false;
+    path.alpha = 0.0f;
+  }
+  return path;
 }
 
 template <Accel A>

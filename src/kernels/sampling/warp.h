@@ -45,4 +45,15 @@ inline Vec2 square_to_triangle(Vec2 u) {
   return {u.x - y, y};
 }
 
+// Uniform regular polygon with its corners on the unit circle, one of them at the angle `rotation`.
+inline Vec2 square_to_polygon(Vec2 u, uint32_t corners, float rotation) {
+  const float n = static_cast<float>(corners);
+  const float side = min(floor(u.x * n), n - 1.0f);
+  const Vec2 b = square_to_triangle({fma(u.x, n, -side), u.y});
+  const float step = 2.0f * pi / n;
+  const SinCos first = sincos(fma(side, step, rotation));
+  const SinCos second = sincos(fma(side + 1.0f, step, rotation));
+  return {fma(b.x, first.cos, b.y * second.cos), fma(b.x, first.sin, b.y * second.sin)};
+}
+
 }  // namespace accuray
