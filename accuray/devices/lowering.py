@@ -40,6 +40,7 @@ class _Lowering:
         self.scene = scene
         self.cmf, self.d65 = colour_arrays()
         self.builder = core.SceneBuilder(self.cmf, self.d65)
+        self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
         self._spectra: dict[Spectrum, Any] = {}
         self.materials: dict[str, int] = {}
@@ -115,6 +116,8 @@ class _Lowering:
         number: int
         if table["type"] == "mesh":
             number = self.builder.add_mesh(*self._mesh(name, table), transform, material, table["prototype"])
+        elif table["type"] in self.solids:
+            number = self.builder.add_mesh(*self._solid(table), transform, material, table["prototype"])
         else:
             values = self._values("shape", table)
             number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
@@ -135,6 +138,14 @@ class _Lowering:
         elif table["shading"] == "smooth" and normals is None:
             normals = core.smooth_normals(positions, faces)
         return positions, faces, normals, uvs
+
+    def _solid(self, table: Values) -> tuple[Any, Any, Any, Any]:
+        """Positions, indices, normals and uvs of a shape that is rendered as a mesh."""
+        from accuray._core import lower as core
+
+        newell = np.array(data.teapot()) if table["type"] == "teapot" else None
+        mesh: tuple[Any, Any, Any, Any] = core.tessellate(table["type"], self._values("shape", table), newell)
+        return mesh
 
     def _add_light(self, light: Values) -> None:
         emission = next(v for v in light.values() if isinstance(v, Spectrum))
