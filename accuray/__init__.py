@@ -16,6 +16,7 @@ from accuray.data.version import __version__
 if TYPE_CHECKING:
     from accuray.devices import build_info, cache_folder
     from accuray.film import Image, ImageError, probe_writable
+    from accuray.film.comparing import Comparison, compare
     from accuray.formats import load
     from accuray.render import Progress, Radiance, radiance, render
     from accuray.scene import Scene, SceneError, Spectrum
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 # Where each public name lives; a module is imported when one of its names is first used, so that `accuray --version`
 # and the other small commands start at once.
 _HOMES = {
+    "Comparison": "accuray.film.comparing",
     "Image": "accuray.film",
     "ImageError": "accuray.film",
     "Progress": "accuray.render",
@@ -34,6 +36,7 @@ _HOMES = {
     "Spectrum": "accuray.scene",
     "build_info": "accuray.devices",
     "cache_folder": "accuray.devices",
+    "compare": "accuray.film.comparing",
     "json_schema": "accuray.scene.jsonschema",
     "load": "accuray.formats",
     "probe_writable": "accuray.film",
@@ -43,6 +46,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "Comparison",
     "Image",
     "ImageError",
     "Progress",
@@ -53,6 +57,7 @@ __all__ = [
     "__version__",
     "build_info",
     "cache_folder",
+    "compare",
     "json_schema",
     "load",
     "probe_writable",
