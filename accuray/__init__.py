@@ -15,6 +15,7 @@ from accuray.data.version import __version__
 
 if TYPE_CHECKING:
     from accuray.devices import build_info, cache_folder
+    from accuray.devices.lowering import Triangles, triangles
     from accuray.film import Image, ImageError, probe_writable
     from accuray.film.comparing import Comparison, compare
     from accuray.formats import load
@@ -34,6 +35,7 @@ _HOMES = {
     "Scene": "accuray.formats",
     "SceneError": "accuray.scene",
     "Spectrum": "accuray.scene",
+    "Triangles": "accuray.devices.lowering",
     "build_info": "accuray.devices",
     "cache_folder": "accuray.devices",
     "compare": "accuray.film.comparing",
@@ -43,6 +45,7 @@ _HOMES = {
     "radiance": "accuray.render",
     "reference_markdown": "accuray.scene.reference",
     "render": "accuray.render",
+    "triangles": "accuray.devices.lowering",
 }
 
 __all__ = [
@@ -54,6 +57,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Spectrum",
+    "Triangles",
     "__version__",
     "build_info",
     "cache_folder",
@@ -64,6 +68,7 @@ __all__ = [
     "radiance",
     "reference_markdown",
     "render",
+    "triangles",
 ]
 
 

@@ -109,7 +109,7 @@ struct Teapot {
                             .kind = Kind::integer,
                             .doc = "Segments along each edge of a patch.",
                             .preset = "16",
-                            .low = 1,
+                            .low = 2,
                             .high = 65536},
                       shading_param());
   }
