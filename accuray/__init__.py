@@ -15,7 +15,9 @@ from accuray.data.version import __version__
 
 if TYPE_CHECKING:
     from accuray.devices import build_info, cache_folder
+    from accuray.devices.lowering import Triangles, triangles
     from accuray.film import Image, ImageError, probe_writable
+    from accuray.film.comparing import Comparison, compare
     from accuray.formats import load
     from accuray.render import Progress, Radiance, radiance, render
     from accuray.scene import Scene, SceneError, Spectrum
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 # Where each public name lives; a module is imported when one of its names is first used, so that `accuray --version`
 # and the other small commands start at once.
 _HOMES = {
+    "Comparison": "accuray.film.comparing",
     "Image": "accuray.film",
     "ImageError": "accuray.film",
     "Progress": "accuray.render",
@@ -32,17 +35,21 @@ _HOMES = {
     "Scene": "accuray.formats",
     "SceneError": "accuray.scene",
     "Spectrum": "accuray.scene",
+    "Triangles": "accuray.devices.lowering",
     "build_info": "accuray.devices",
     "cache_folder": "accuray.devices",
+    "compare": "accuray.film.comparing",
     "json_schema": "accuray.scene.jsonschema",
     "load": "accuray.formats",
     "probe_writable": "accuray.film",
     "radiance": "accuray.render",
     "reference_markdown": "accuray.scene.reference",
     "render": "accuray.render",
+    "triangles": "accuray.devices.lowering",
 }
 
 __all__ = [
+    "Comparison",
     "Image",
     "ImageError",
     "Progress",
@@ -50,15 +57,18 @@ __all__ = [
     "Scene",
     "SceneError",
     "Spectrum",
+    "Triangles",
     "__version__",
     "build_info",
     "cache_folder",
+    "compare",
     "json_schema",
     "load",
     "probe_writable",
     "radiance",
     "reference_markdown",
     "render",
+    "triangles",
 ]
 
 

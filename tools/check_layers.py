@@ -32,7 +32,7 @@ PYTHON_LAYERS: dict[str, frozenset[str]] = {
     "data": frozenset(),
     "scene": frozenset({"data", "_core.schema"}),
     "formats": frozenset({"data", "scene", "_core.mesh"}),
-    "film": frozenset({"data"}),
+    "film": frozenset({"data", "testing"}),
     "devices": frozenset({"data", "scene", "film", "_core"}),
     "render": frozenset({"data", "scene", "film", "devices"}),
     "farm": PUBLIC,

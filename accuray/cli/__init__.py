@@ -3,7 +3,8 @@
 A verb's module has `SUMMARY`, `configure(parser)` and `run(options) -> exit status`. Only the module of the verb that
 was asked for is imported, and the engine only once it has something to do, so that the command starts at once.
 
-Exit status: 0 done; 1 failed; 2 wrong usage or an invalid scene; 130 and 143 interrupted by SIGINT and SIGTERM.
+Exit status: 0 done; 1 failed, or a tolerance was exceeded; 2 wrong usage or an invalid scene or image; 130 and 143
+interrupted by SIGINT and SIGTERM.
 Standard output carries only what was asked for; everything else goes to standard error.
 """
 
@@ -16,7 +17,7 @@ from importlib import import_module
 
 from .parser import Parser, UsageError, nearest
 
-VERBS = ("render", "merge", "info", "verify", "schema", "doctor")
+VERBS = ("render", "merge", "compare", "info", "verify", "schema", "doctor")
 
 FAILED = 1
 USAGE = 2

@@ -93,6 +93,14 @@ def colour_spaces() -> dict[str, Any]:
     return _json("rgb_colourspaces.json")
 
 
+@cache
+def teapot() -> tuple[tuple[float, float, float], ...]:
+    """Newell's teapot: the control points of 32 Bezier patches, 16 after 16, +Z up (README)."""
+    content = _json("newell_teapot.json")
+    points = [(float(x), float(y), float(z)) for x, y, z in content["vertices"]]
+    return tuple(points[index] for patch in content["patches"] for index in patch)
+
+
 def _lines(file: str) -> list[str]:
     """Header and rows of a CSV file without comments."""
     text = (FOLDER / file).read_text(encoding="utf-8")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from math import fsum
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,36 @@ def lower(scene: Scene) -> tuple[Any, dict[str, MeshReport]]:
     return lowering.block(), lowering.reports
 
 
+class Triangles(NamedTuple):
+    """The triangles that a shape is rendered as, before its transform: front sides run counter-clockwise.
+
+    positions: float32 (N, 3), metres. faces: uint32 (M, 3), indices of positions. normals: float32 (N, 3), unit, or
+    None for flat shading. uvs: float32 (N, 2), or None.
+    """
+
+    positions: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+    normals: NDArray[np.float32] | None
+    uvs: NDArray[np.float32] | None
+
+
+def triangles(scene: Scene, shape: str) -> Triangles:
+    """The triangles of a shape of the scene, by its name: a mesh, or a shape that is rendered as one.
+
+    Raises:
+        ValueError: the scene has no such shape, or it is not made of triangles.
+        SceneError: its parameters contradict each other, or it would take too many triangles.
+    """
+    lowering = _Lowering(scene)
+    if shape not in scene.shapes:
+        raise ValueError(f"the scene has no shape {shape!r}: it has {', '.join(scene.shapes) or 'none'}")
+    table = scene.shapes[shape]
+    if table["type"] != "mesh" and table["type"] not in lowering.solids:
+        raise ValueError(f"{shape!r} is a {table['type']}: allowed are mesh, {', '.join(lowering.solids)}")
+    result: Triangles = lowering._guard(f"shapes.{shape}", partial(lowering.triangles, shape, table))
+    return result
+
+
 class _Lowering:
     """Walks the resolved tables once; names become the numbers that the block uses."""
 
@@ -40,6 +70,7 @@ class _Lowering:
         self.scene = scene
         self.cmf, self.d65 = colour_arrays()
         self.builder = core.SceneBuilder(self.cmf, self.d65)
+        self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
         self._spectra: dict[Spectrum, Any] = {}
         self.materials: dict[str, int] = {}
@@ -114,15 +145,24 @@ class _Lowering:
     def _add_shape(self, name: str, table: Values) -> int:
         material, transform = self.materials[table["material"]], _matrix(table["transform"])
         number: int
-        if table["type"] == "mesh":
-            number = self.builder.add_mesh(*self._mesh(name, table), transform, material, table["prototype"])
+        if table["type"] == "mesh" or table["type"] in self.solids:
+            number = self.builder.add_mesh(*self.triangles(name, table), transform, material, table["prototype"])
         else:
             values = self._values("shape", table)
             number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
         return number
 
-    def _mesh(self, name: str, table: Values) -> tuple[Any, Any, Any, Any]:
-        """Positions, indices, normals and uvs; arrays that came from no file are repaired first, as readers do."""
+    def triangles(self, name: str, table: Values) -> Triangles:
+        """The triangles of a mesh or of one of `solids`."""
+        if table["type"] == "mesh":
+            return self._mesh(name, table)
+        from accuray._core import lower as core
+
+        newell = np.array(data.teapot()) if table["type"] == "teapot" else None
+        return Triangles(*core.tessellate(table["type"], self._values("shape", table), newell))
+
+    def _mesh(self, name: str, table: Values) -> Triangles:
+        """Arrays of a mesh; those that came from no file are repaired first, as readers do."""
         from accuray._core import mesh as core
 
         positions, faces, normals, uvs = (table[key] for key in ("positions", "faces", "normals", "uvs"))
@@ -135,7 +175,7 @@ class _Lowering:
             normals = None
         elif table["shading"] == "smooth" and normals is None:
             normals = core.smooth_normals(positions, faces)
-        return positions, faces, normals, uvs
+        return Triangles(positions, faces, normals, uvs)
 
     def _add_light(self, light: Values) -> None:
         emission = next(v for v in light.values() if isinstance(v, Spectrum))

@@ -169,7 +169,7 @@ def read_exr(path: str | os.PathLike[str]) -> tuple[Film, dict[str, Any]]:
 
 def _read(path: str) -> tuple[Film, dict[str, Any]]:
     size = _check_is_exr(path)
-    headers = {part.header.get("name"): part.header for part in _open(path, header_only=True)[0]}
+    headers = _headers(path)
     if STATE_PART not in headers or PICTURE_PART not in headers:
         raise ImageError(f"is an EXR without AccuRay's state (part {STATE_PART}): it can be viewed, not loaded")
     text = _attribute(headers[PICTURE_PART], "accuray:ledger", str)
@@ -188,6 +188,61 @@ def _read(path: str) -> tuple[Film, dict[str, Any]]:
     if isinstance(time, np.ndarray) and time.size == 1:
         metadata[_TIME] = float(time[0])
     return _film(record, state), metadata
+
+
+def has_state(path: str | os.PathLike[str]) -> bool:
+    """Whether an EXR file holds AccuRay's state, so that `read_exr` can read it.
+
+    Raises:
+        ImageError: as `read_exr`, but for the state.
+    """
+    try:
+        return STATE_PART in _headers(os.fspath(path))
+    except ImageError as error:
+        raise ImageError(error.reason, path) from error.__cause__
+
+
+def read_rgb(path: str | os.PathLike[str]) -> NDArray[np.float32]:
+    """The linear Rec.709 pixels (height, width, 3) of any EXR file's data window, whoever wrote it.
+
+    They are the channels R, G and B of the first part that has them, or the first layer's (`beauty.R`, ...).
+
+    Raises:
+        ImageError: the file is missing, no EXR, truncated, damaged, or holds no such channels or other primaries.
+    """
+    try:
+        return _read_rgb(os.fspath(path))
+    except ImageError as error:
+        raise ImageError(error.reason, path) from error.__cause__
+
+
+def _read_rgb(path: str) -> NDArray[np.float32]:
+    size = _check_is_exr(path)
+    for header in _headers(path).values():
+        _check_expansion(header, size)
+        _check_primaries(header)
+    parts, complaint = _open(path, header_only=False)
+    names = [name for part in parts for name in part.channels]
+    for part in parts:
+        for layer in sorted(name.removesuffix("R") for name in part.channels if name == "R" or name.endswith(".R")):
+            planes = [part.channels[layer + colour].pixels for colour in "RGB" if layer + colour in part.channels]
+            if len(planes) == 3 and len({plane.shape for plane in planes}) == 1:
+                return np.stack(planes, axis=2).astype(np.float32)
+    problem = f"its pixels cannot be decoded ({complaint})" if complaint else f"it has {', '.join(names) or 'none'}"
+    raise ImageError(f"has no channels R, G and B of one size: {problem}")
+
+
+def _check_primaries(header: Mapping[str, Any]) -> None:
+    """Refuses colours of another space; where nothing is said they are Rec.709, as the format has it."""
+    given = header.get("chromaticities")
+    if given is not None and not np.allclose(np.asarray(given, dtype=np.float64), CHROMATICITIES, atol=2e-3):
+        raise ImageError(f"has other primaries than Rec.709: chromaticities {', '.join(f'{v:g}' for v in given)}")
+
+
+def _headers(path: str) -> dict[Any, Any]:
+    """The headers of the parts by their names."""
+    _check_is_exr(path)
+    return {part.header.get("name"): part.header for part in _open(path, header_only=True)[0]}
 
 
 def _check_is_exr(path: str) -> int:
@@ -266,7 +321,13 @@ def _check_geometry(header: Mapping[str, Any], record: ledger.Ledger, size: int)
     window = (int(x0), int(y0), int(x1) + 1, int(y1) + 1)
     if window != record.window:
         raise ImageError(f"is damaged: its data window {window} is not the ledger's {record.window}")
-    declared = (window[2] - window[0]) * (window[3] - window[1]) * len(header["channels"]) * 4
+    _check_expansion(header, size)
+
+
+def _check_expansion(header: Mapping[str, Any], size: int) -> None:
+    """Refuses pixels that cannot fit a file of `size` bytes."""
+    (x0, y0), (x1, y1) = header["dataWindow"]
+    declared = (int(x1) + 1 - int(x0)) * (int(y1) + 1 - int(y0)) * len(header["channels"]) * 4
     if declared > size * _EXPANSION_LIMIT:
         raise ImageError(f"is damaged: it declares {declared} bytes of pixels in a file of {size} bytes")
 

@@ -34,14 +34,14 @@ def encode_png(rgb: NDArray[np.float32], alpha: NDArray[np.float32] | None = Non
     scale = np.float32(exposure_scale(exposure))
     with np.errstate(over="ignore", invalid="ignore"):  # what overflows is white
         if alpha is None:
-            return _file(srgb8(rgb * scale))
+            return encode_codes(srgb8(rgb * scale))
         opacity = np.clip(np.nan_to_num(alpha), 0.0, 1.0)[:, :, None]
         straight = np.divide(rgb, opacity, out=np.zeros_like(rgb), where=opacity > 0)
-        return _file(np.concatenate([srgb8(straight * scale), np.rint(opacity * 255).astype(np.uint8)], axis=2))
+        return encode_codes(np.concatenate([srgb8(straight * scale), np.rint(opacity * 255).astype(np.uint8)], axis=2))
 
 
-def _file(pixels: NDArray[np.uint8]) -> bytes:
-    """The file of 8-bit pixels (height, width, 3 or 4)."""
+def encode_codes(pixels: NDArray[np.uint8]) -> bytes:
+    """The PNG file of 8-bit sRGB codes (height, width, 3 or 4)."""
     height, width, channels = pixels.shape
     header = struct.pack(">IIBBBBB", width, height, 8, _COLOUR_TYPES[channels], 0, 0, 0)
     chunks = ((b"IHDR", header), (b"sRGB", _PERCEPTUAL), (b"IDAT", _compressed(pixels)), (b"IEND", b""))

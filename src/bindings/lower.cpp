@@ -4,6 +4,7 @@
 #include "bindings/bindings.h"
 #include "lower/builder.h"
 #include "lower/rgb_table.h"
+#include "lower/solids.h"
 
 namespace accuray::bindings {
 
@@ -141,6 +142,25 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
       .def("finish", &SceneBuilder::finish, "The lowered scene; the builder must not be used afterwards.");
 }
 
+template <class... Ts>
+nb::tuple names_of(TypeList<Ts...>) {
+  return nb::make_tuple(Ts::name...);
+}
+
+// Arrays as add_mesh takes them.
+nb::tuple tessellated(const std::string& type, const nb::dict& values, const std::optional<Rows<double, 3>>& newell) {
+  const Values resolved = to_values(values);
+  mesh::MeshData mesh;
+  {
+    const nb::gil_scoped_release release;
+    mesh = tessellate(type, resolved, newell ? std::span(newell->data(), newell->size()) : std::span<const double>());
+  }
+  nb::object normals = nb::none();
+  if (!mesh.normals.empty()) normals = to_numpy(std::move(mesh.normals), 3);
+  return nb::make_tuple(to_numpy(std::move(mesh.positions), 3), to_numpy(std::move(mesh.indices), 3), normals,
+                        to_numpy(std::move(mesh.uvs), 2));
+}
+
 }  // namespace
 
 void bind_lower(nb::module_& module) {
@@ -174,6 +194,10 @@ void bind_lower(nb::module_& module) {
       "cmf: (471, 3) colour matching functions; d65: (471,) scaled to Y = 1; both at 360, 361, ... 830 nm.");
   bind_spectra(builder);
   bind_parts(builder);
+
+  lower.attr("SOLIDS") = names_of(Solids{});
+  lower.def("tessellate", &tessellated, "type"_a, "values"_a, "newell"_a.none(),
+            "A shape of SOLIDS as (positions, indices, normals or None, uvs); a teapot from (512, 3) control points.");
 
   lower.attr("RGB_TABLE_NODES") = kRgbTableNodes;
   lower.def("rgb_table_nodes", [](int n) { return to_numpy(rgb_table_scale_nodes(n), 0); }, "n"_a);

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import accuray
+from accuray.scene import Spectrum
 
 FOLDER = Path(__file__).resolve().parents[2] / "scenes"
 SIZE = 32
@@ -47,6 +48,13 @@ def enlarged(scene: accuray.Scene, lamp: str, factor: float) -> accuray.Scene:
     material = dict(scene.materials[shapes[lamp]["material"]])
     material["emission"] = replace(material["emission"], scale=material["emission"].scale / factor**2)
     return replace(scene, shapes=shapes, materials=scene.materials | {shapes[lamp]["material"]: material})
+
+
+def glowing(scene: accuray.Scene, material: str, radiance: float) -> accuray.Scene:
+    """What is made of the material emits white light to both sides."""
+    glow = Spectrum(role="emission", form="constant", value=radiance)
+    table = scene.materials[material] | {"emission": glow, "emission_sides": "both"}
+    return replace(scene, materials=scene.materials | {material: table})
 
 
 def corners(table: Table) -> NDArray[np.float64]:
@@ -85,6 +93,8 @@ FAIR = {
     "spheres": Fair(
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
+    "teapot": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),
+    "torus-knot": Fair("the room glows", partial(glowing, material="plaster", radiance=1.0)),
     "zoo": Fair("as it is: its lamps are large"),
 }
 

@@ -1,8 +1,9 @@
 // The shapes that a scene can name. Mesh, Sphere and Disk exist in the lowered scene; a rectangle is lowered to a mesh
-// of two triangles and an instance to an InstanceRecord.
+// of two triangles, those of solids.h to meshes too, and an instance to an InstanceRecord.
 #pragma once
 
 #include "kernels/dispatch.h"
+#include "kernels/geometry/solids.h"
 #include "kernels/scene_view.h"
 #include "kernels/schema.h"
 
@@ -172,6 +173,6 @@ struct ShapeCommon {
   }
 };
 
-using Shapes = TypeList<Mesh, Sphere, Disk, Rectangle, Instance>;
+using Shapes = TypeList<Mesh, Sphere, Disk, Rectangle, Cube, Cylinder, Torus, TorusKnot, Teapot, Instance>;
 
 }  // namespace accuray
