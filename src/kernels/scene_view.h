@@ -7,11 +7,12 @@
 
 #include "kernels/geometry/ray.h"
 #include "kernels/math/transform.h"
+#include "kernels/spectrum/rgb.h"
 #include "kernels/spectrum/spectrum.h"
 
 namespace accuray {
 
-constexpr uint32_t block_version = 2;
+constexpr uint32_t block_version = 3;
 constexpr uint32_t lambda_guide_size = 512;
 
 template <class T>
@@ -27,11 +28,20 @@ struct Tagged {
   uint32_t offset;
 };
 
+// A number that may come from a texture; read by ShadingPoint::real().
+struct RealRef {
+  float value;       // the number itself, or the factor of the texture's
+  uint32_t texture;  // index in SceneView::textures; none: the number stands alone
+  uint32_t channel;  // of the texture: red, green, blue or alpha
+  float low, high;   // what the parameter allows, for textures
+};
+
 struct MaterialRecord {
   Tagged bsdf;
   SpectrumRef emission;  // none: does not emit
   uint32_t emits_both_sides;
   uint32_t reads_texture_point;  // it is textured, or its BSDF is oriented
+  uint32_t oriented;             // its BSDF's local x axis follows dpdu
 };
 
 struct GeometryRecord {
@@ -72,6 +82,9 @@ struct Root {
   Slice<uint32_t> lights_of_instance;
   Slice<SpectrumRecord> spectra;
   Slice<float> tables;
+  Slice<Tagged> textures;
+  Slice<float> rgb_nodes;  // the table of rgb.h in a section of its own; empty if no spectrum is textured
+  Slice<float> rgb_coefficients;
   Slice<float> response;         // sensor at 360 .. 830 nm, four channels per node
   Slice<float> lambda_cdf;       // wavelength sampling: running sums, 471 entries
   Slice<uint32_t> lambda_guide;  // first cell of lambda_cdf that each of lambda_guide_size parts of [0, 1) meets
@@ -90,6 +103,8 @@ struct SceneView {
   const uint32_t* lights_of_instance;
   const SpectrumRecord* spectra;
   const float* tables;
+  const Tagged* textures;
+  RgbTable rgb;
   const float* response;
   const float* lambda_cdf;
   const uint32_t* lambda_guide;
@@ -120,6 +135,8 @@ struct SceneView {
     view.lights_of_instance = view.at(root.lights_of_instance);
     view.spectra = view.at(root.spectra);
     view.tables = view.at(root.tables);
+    view.textures = view.at(root.textures);
+    view.rgb = {view.at(root.rgb_nodes), view.at(root.rgb_coefficients), static_cast<int32_t>(root.rgb_nodes.count)};
     view.response = view.at(root.response);
     view.lambda_cdf = view.at(root.lambda_cdf);
     view.lambda_guide = view.at(root.lambda_guide);

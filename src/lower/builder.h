@@ -1,7 +1,7 @@
 // From a resolved scene description to the block that engines render.
 //
-// Usage: add spectra, materials, shapes (first those of the scene itself, then prototypes), instances and lights, set
-// camera, filter, integrator and film, and call finish() once.
+// Usage: add pictures, textures, spectra, materials, shapes (first those of the scene itself, then prototypes),
+// instances and lights, set camera, filter, integrator and film, and call finish() once.
 #pragma once
 
 #include <optional>
@@ -15,6 +15,7 @@
 #include "lower/lights.h"
 #include "lower/parameters.h"
 #include "lower/spectra.h"
+#include "lower/textures.h"
 #include "lower/transform.h"
 
 namespace accuray {
@@ -32,6 +33,7 @@ class SceneBuilder {
   explicit SceneBuilder(ColourData colour);
 
   SpectrumPool& spectra() { return spectra_; }
+  TexturePool& textures() { return textures_; }
 
   uint32_t add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
                         bool both_sides);
@@ -51,7 +53,11 @@ class SceneBuilder {
   Block finish();
 
  private:
+  bool is_textured(const Value& value) const;
   uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, bool prototype);
+  // A bulk array in a section of its own; an empty one stays nowhere.
+  template <class T>
+  Slice<T> store(std::vector<T> values);
   // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
   uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material);
   template <class Shape>
@@ -64,6 +70,8 @@ class SceneBuilder {
 
   SpectrumPool spectra_;
   ParameterPool pool_;
+  std::vector<Section> bulk_;  // sections 1, 2, ...
+  TexturePool textures_;
   LightTable lights_;
   Root root_{};
   std::vector<MaterialRecord> materials_;
@@ -71,7 +79,6 @@ class SceneBuilder {
   std::vector<InstanceRecord> instances_;
   std::vector<uint32_t> light_of_primitive_;
   std::vector<uint32_t> lights_of_instance_;
-  std::vector<Section> bulk_;  // sections 1, 2, ...
   Vec3 low_{infinity, infinity, infinity}, high_{-infinity, -infinity, -infinity};
 };
 

@@ -16,8 +16,15 @@
 
 namespace accuray {
 
-// A resolved value: number (also bool and the position of a choice), vector, or spectrum.
-using Value = std::variant<double, std::array<double, 3>, SpectrumRef>;
+// A number that a texture gives, times `scale`.
+struct TexturedReal {
+  uint32_t texture;
+  uint32_t channel;
+  double scale;
+};
+
+// A resolved value: number (also bool and the position of a choice), vector, spectrum, or textured number.
+using Value = std::variant<double, std::array<double, 3>, SpectrumRef, TexturedReal>;
 using Values = std::map<std::string, Value, std::less<>>;
 
 inline const Value& value_of(const Values& values, std::string_view name) {
@@ -35,6 +42,16 @@ inline Vec3 to_vec3(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
+// The struct's member of a real parameter that takes textures.
+inline RealRef real_ref(const Param& param, const Value& value) {
+  if (const auto* textured = std::get_if<TexturedReal>(&value)) {
+    const auto bound = [](double x) { return static_cast<float>(clamp(x, -3e38, 3e38)); };
+    return {static_cast<float>(textured->scale), textured->texture, textured->channel, bound(param.low),
+            bound(param.high)};
+  }
+  return {static_cast<float>(std::get<double>(value)), none, 0, 0.0f, 0.0f};
+}
+
 // Writes one value into the struct of `size` bytes at `target` as the parameter's kind asks.
 inline void write_member(const Param& param, const Value& value, uint8_t* target, size_t size) {
   const auto put = [&](auto x) {
@@ -44,6 +61,7 @@ inline void write_member(const Param& param, const Value& value, uint8_t* target
   };
   switch (param.kind) {
     case Kind::real:
+      if (param.texturable) return put(real_ref(param, value));
       return put(static_cast<float>(std::get<double>(value)));
     case Kind::integer:
       return put(static_cast<int32_t>(std::get<double>(value)));

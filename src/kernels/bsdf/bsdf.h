@@ -16,6 +16,7 @@
 
 #include "kernels/geometry/texture_point.h"
 #include "kernels/schema.h"
+#include "kernels/texture/list.h"
 
 namespace accuray {
 
@@ -25,7 +26,12 @@ struct ShadingPoint {
   const Wavelengths& wl;
   TexturePoint where;  // set for materials whose record says that they read it
 
-  Spectrum spectrum(SpectrumRef ref) const { return scene.spectrum(ref, wl); }
+  Spectrum spectrum(SpectrumRef ref) const {
+    const SpectrumRecord& s = scene.spectra[ref.index];
+    if (s.form == SpectrumForm::textured) return textured_reflectance(scene, s, where, wl);
+    return evaluate(s, scene.tables, wl);
+  }
+  float real(const RealRef& ref) const { return ref.texture == none ? ref.value : textured_real(scene, ref, where); }
 };
 
 enum Lobe : uint32_t {

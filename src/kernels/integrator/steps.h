@@ -24,8 +24,7 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
   return {scene, path.wl, texture_point(scene, path.hit, surface)};
 }
 inline Frame shading_frame(const MaterialRecord& material, const Surface& surface, const ShadingPoint& p) {
-  return material.reads_texture_point == 0 ? Frame::around(surface.shading)
-                                           : Frame::along(surface.shading, p.where.dpdu);
+  return material.oriented == 0 ? Frame::around(surface.shading) : Frame::along(surface.shading, p.where.dpdu);
 }
 
 template <Accel A>
