@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from math import fsum
 from typing import Any
@@ -76,10 +76,15 @@ class _Lowering:
 
     def _values(self, family: str, table: Values) -> Values:
         """The numbers, vectors, choices and spectra of a table; the rest has no place in the kernels' structs."""
+        return self._values_of(schemas.current().family(family).types[table["type"]].params, table)
+
+    def _values_of(self, params: Iterable[schemas.Param], table: Values) -> Values:
         values: Values = {}
-        for param in schemas.current().family(family).types[table["type"]].params:
+        for param in params:
             value = table.get(param.name)
-            if value is None or param.kind in ("text", "file", "transform", "array", "reference"):
+            if value is None or param.kind in ("text", "file", "transform", "array"):
+                continue
+            if param.kind == "reference" and not param.texturable:
                 continue
             if param.kind == "enum":
                 value = param.choices.index(value)
@@ -112,18 +117,16 @@ class _Lowering:
 
         texture = self.textures[use.texture]
         if use.channel:
-            return core.TexturedReal(texture, CHANNELS.index(use.channel), use.scale)
+            channel = CHANNELS.index(use.channel) if use.channel in CHANNELS else 0
+            return core.TexturedReal(texture, channel, use.scale)
         self._need_rgb_table()
         return self.builder.textured_reflectance(texture, use.scale)
 
     def _add_material(self, name: str, material: Values) -> None:
-        emission = material["emission"]
-        self.materials[name] = self.builder.add_material(
-            material["type"],
-            self._values("bsdf", material),
-            None if emission is None else self._spectrum(emission),
-            material["emission_sides"] == "both",
-        )
+        header = self._values_of(schemas.current().family("material").common, material)
+        emission = header.pop("emission", None)
+        values = self._values("bsdf", material)
+        self.materials[name] = self.builder.add_material(material["type"], values, header, emission)
 
     def _add_shapes(self) -> None:
         """First what the scene shows itself, then the prototypes, group by group, with their instances."""

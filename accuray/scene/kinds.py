@@ -17,7 +17,7 @@ from accuray.scene.plain import choice, in_range, quantity, range_text, text_val
 from accuray.scene.schema import Param
 from accuray.scene.scope import SECTION_OF, Scope
 from accuray.scene.spectra import metal_names, parse_spectrum
-from accuray.scene.textures import names_texture, parse_use
+from accuray.scene.textures import TextureUse, names_texture, parse_use
 from accuray.scene.transforms import parse_transform
 
 VOCABULARIES: dict[str, Callable[[], list[str]]] = {"metal": metal_names}
@@ -97,7 +97,9 @@ def _array(param: Param, value: Any, where: Where, _scope: Scope) -> Any:
     return parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
 
 
-def _reference(param: Param, value: Any, where: Where, scope: Scope) -> str | list[str]:
+def _reference(param: Param, value: Any, where: Where, scope: Scope) -> str | list[str] | TextureUse:
+    if param.role == "texture":
+        return parse_use(param, value, where, scope)
     if param.role != "shape":
         return _referred(param, value, where, scope)
     names = value if isinstance(value, (list, tuple)) else [value]

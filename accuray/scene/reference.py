@@ -123,7 +123,7 @@ def _table(params: Iterable[Param]) -> str:
 
 
 def _kind(param: Param) -> str:
-    if param.texturable:
+    if param.texturable and param.kind != "reference":
         return _plain_kind(param) + " or texture"
     return _plain_kind(param)
 

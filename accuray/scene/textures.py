@@ -12,6 +12,9 @@ from accuray.scene.schema import Param, Schema
 from accuray.scene.scope import Scope
 
 CHANNELS = ("red", "green", "blue", "alpha")
+NORMAL = "normal"
+"""Channel of a normal map, which reads three as numbers."""
+
 Objects = dict[str, dict[str, Any]]
 _SCALE = Param("scale", "float", default=1.0, min=0.0)
 _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
@@ -19,7 +22,10 @@ _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
 
 @dataclass(frozen=True)
 class TextureUse:
-    """A parameter's value that a texture gives: its colour, or for a number one of its channels, times ``scale``."""
+    """A parameter's value that a texture gives: its colour, or for a number one of its channels, times ``scale``.
+
+    ``channel`` is "" for a colour, "normal" for a normal map.
+    """
 
     texture: str
     scale: float = 1.0
@@ -36,7 +42,9 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
     if not param.texturable:
         raise where.error(f"takes no texture, only a {param.kind}", value=value)
     if isinstance(value, TextureUse):
-        value = {key: item for key, item in vars(value).items() if item != ""}
+        value = {key: item for key, item in vars(value).items() if item not in ("", NORMAL)}
+    elif not isinstance(value, dict):
+        value = {"texture": value}
     keys = ("texture", "scale", "channel") if param.kind == "float" else ("texture", "scale")
     for key in value:
         if key not in keys:
@@ -46,7 +54,7 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
         raise where.child("texture").unknown(name, "texture", known)
     scale = quantity(_SCALE, value.get("scale", _SCALE.default), where.child("scale"))
     if param.kind != "float":
-        return TextureUse(name, scale)
+        return TextureUse(name, scale, NORMAL if param.kind == "reference" else "")
     return TextureUse(name, scale, choice(_CHANNEL, value.get("channel", _CHANNEL.default), where.child("channel")))
 
 
@@ -77,6 +85,15 @@ def settle_colour_spaces(textures: Objects, materials: Objects, where: Where) ->
                 allowed='"srgb", "linear" or "data"; or two textures, which share one file',
             )
         texture["color_space"] = "data" if numbers else "srgb"
+
+
+def check_opacity(materials: Objects, where: Where) -> None:
+    """A surface that lets light through cannot emit: its lights are sampled whole. Raises SceneError."""
+    for name, material in materials.items():
+        if material["emission"] is not None and material["opacity"] != 1.0:
+            raise where.child("materials", name, "opacity").error(
+                "cannot go with `emission`", allowed="opacity = 1 for a surface that emits"
+            )
 
 
 def check_coordinates(textures: Objects, materials: Objects, shapes: Objects, schema: Schema, where: Where) -> None:

@@ -143,9 +143,11 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
   builder
       .def(
           "add_material",
-          [](SceneBuilder& b, const std::string& type, const nb::dict& values, std::optional<SpectrumRef> emission,
-             bool both_sides) { return b.add_material(type, to_values(values), emission, both_sides); },
-          "type"_a, "values"_a, "emission"_a.none(), "both_sides"_a)
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, const nb::dict& header,
+             std::optional<SpectrumRef> emission) {
+            return b.add_material(type, to_values(values), to_values(header), emission);
+          },
+          "type"_a, "values"_a, "header"_a, "emission"_a.none())
       .def(
           "add_mesh",
           [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,

@@ -42,6 +42,10 @@ struct MaterialRecord {
   uint32_t emits_both_sides;
   uint32_t reads_texture_point;  // it is textured, or its BSDF is oriented
   uint32_t oriented;             // its BSDF's local x axis follows dpdu
+  RealRef opacity;               // share of the rays that the surface stops
+  uint32_t normal_map;           // texture; none: the shape's own normals
+  uint32_t normal_map_down;      // its green points down (DirectX)
+  float normal_strength;         // factor of its slopes
 };
 
 struct GeometryRecord {
@@ -69,9 +73,10 @@ struct Root {
   uint32_t version;
   uint32_t environment;  // index of the constant environment light; none: black
   uint32_t hide_environment;
+  uint32_t any_opacity;     // some material lets rays through
   uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
-  uint32_t reserved[3];
+  uint32_t reserved[2];
   Tagged camera, filter, integrator;
   Slice<MaterialRecord> materials;
   Slice<GeometryRecord> geometries;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "kernels/bsdf/list.h"
+#include "kernels/texture/opacity.h"
 
 namespace accuray {
 
@@ -68,19 +69,29 @@ bool SceneBuilder::is_textured(const Value& value) const {
   return std::holds_alternative<TexturedReal>(value) || (spectrum != nullptr && spectra_.is_textured(*spectrum));
 }
 
-uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
-                                    bool both_sides) {
-  const bool emits = emission && !spectra_.is_zero(*emission);
-  const Tagged bsdf = lower_type(Bsdfs{}, type, values, pool_);
+uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, const Values& header,
+                                    std::optional<SpectrumRef> emission) {
+  MaterialRecord material{};
+  material.bsdf = lower_type(Bsdfs{}, type, values, pool_);
+  material.emission = {emission && !spectra_.is_zero(*emission) ? emission->index : none};
+  material.emits_both_sides = number_of(header, "emission_sides") != 0.0 ? 1u : 0u;
+  material.opacity = real_ref(param_named<MaterialCommon>("opacity"), value_of(header, "opacity"));
+  if (!is_always_opaque(material)) root_.any_opacity = 1;
+  material.normal_map = none;
+  if (header.contains("normal_map")) {
+    const auto& map = std::get<TexturedReal>(value_of(header, "normal_map"));
+    material.normal_map = map.texture;
+    material.normal_strength = static_cast<float>(map.scale);
+    material.normal_map_down = number_of(header, "normal_map_convention") != 0.0 ? 1u : 0u;
+  }
+  const auto any_textured = [&](const Values& some) {
+    return std::any_of(some.begin(), some.end(), [&](const auto& named) { return is_textured(named.second); });
+  };
   const bool oriented =
-      dispatch(Bsdfs{}, bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::oriented; }; });
-  const bool textured =
-      std::any_of(values.begin(), values.end(), [&](const auto& named) { return is_textured(named.second); });
-  materials_.push_back({bsdf,
-                        {emits ? emission->index : none},
-                        both_sides ? 1u : 0u,
-                        oriented || textured ? 1u : 0u,
-                        oriented ? 1u : 0u});
+      dispatch(Bsdfs{}, material.bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::oriented; }; });
+  material.oriented = oriented ? 1u : 0u;
+  material.reads_texture_point = oriented || any_textured(values) || any_textured(header) ? 1u : 0u;
+  materials_.push_back(material);
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 

@@ -35,8 +35,9 @@ class SceneBuilder {
   SpectrumPool& spectra() { return spectra_; }
   TexturePool& textures() { return textures_; }
 
-  uint32_t add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
-                        bool both_sides);
+  // `header`: the parameters of MaterialCommon but for the emission.
+  uint32_t add_material(std::string_view type, const Values& values, const Values& header,
+                        std::optional<SpectrumRef> emission);
   // Each returns the geometry's number. `prototype`: rendered through instances only; these come after all others.
   uint32_t add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype);
   uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,

@@ -77,6 +77,16 @@ inline void write_member(const Param& param, const Value& value, uint8_t* target
   }
 }
 
+// The description of the parameter of this name; throws if there is none.
+template <class T>
+Param param_named(std::string_view name) {
+  constexpr auto params = T::params();
+  for (uint32_t i = 0; i < params.size; ++i) {
+    if (name == params.items[i].name) return params.items[i];
+  }
+  throw std::logic_error("no parameter is called '" + std::string(name) + "'");
+}
+
 // A struct of type T with every member that its table names filled in; the others are zero.
 template <class T>
 T struct_of(const Values& values) {

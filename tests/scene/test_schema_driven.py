@@ -22,6 +22,10 @@ SECTION_OF = {
 }  # fmt: skip
 
 
+NEEDED: dict[str, dict[str, Any]] = {"conductor": {"metal": "Au"}, "image": {"pixels": [[0.5]]}}
+"""What a type cannot do without, besides the parameter in question."""
+
+
 def with_velvet(tables: dict[str, Any]) -> dict[str, Any]:
     """The tables and one more BSDF, as a new header in the kernels would add it."""
     common = {"required": False, "role": "", "group": "", "texturable": False, "animatable": True, "choices": []}
@@ -91,7 +95,8 @@ def scene_with(section: str, type_: Type, param: Param, value: Any) -> dict[str,
     """A scene whose only fault can be the value of that parameter."""
     if section in ("film", "render"):
         return {section: {param.name: value}}
-    table = {"type": type_.name, param.name: value}
+    needed = {} if param.group else NEEDED.get(type_.name, {})
+    table = {**needed, "type": type_.name, param.name: value}
     if section == "filter":
         return {"film": {"filter": table}}
     if section in ("camera", "integrator"):

@@ -3,11 +3,15 @@
 
 #include "kernels/dispatch.h"
 #include "kernels/texture/checker.h"
+#include "kernels/texture/gradient.h"
 #include "kernels/texture/image.h"
+#include "kernels/texture/marble.h"
+#include "kernels/texture/noise.h"
+#include "kernels/texture/wood.h"
 
 namespace accuray {
 
-using Textures = TypeList<ImageTexture, CheckerTexture>;
+using Textures = TypeList<ImageTexture, CheckerTexture, GradientTexture, NoiseTexture, WoodTexture, MarbleTexture>;
 
 // Never inlined: scenes without textures shall not carry the code of all of them through every BSDF.
 ACCURAY_NOINLINE inline TextureValue texture_value(const SceneView& scene, uint32_t texture, const TexturePoint& p) {
