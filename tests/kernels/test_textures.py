@@ -1,4 +1,4 @@
-"""Textures against independent formulas: every format, wrap mode and filter of pictures, and the procedural patterns."""
+"""Textures against independent formulas: formats, wrap modes and filters of pictures, and the procedural patterns."""
 
 from __future__ import annotations
 

@@ -40,20 +40,20 @@ ACCURAY_NOINLINE inline Vec3 mapped_normal(const SceneView& scene, const Materia
 
 // The shading normal nearest to the given one for which the viewer's mirror direction does not lie below the true
 // surface; without it, normals that lean away from the viewer make black patches. The mirror direction is moved up to
-// the horizon and the normal put half way between it and the viewer (Keller et al. 2017). A BSDF in the frame of the
-// result scatters no more than it would on a flat surface.
+// just above the horizon and the normal put half way between it and the viewer (after Keller et al. 2017, "The Iray Light
+// Transport Simulation and Rendering System", who move it to the horizon: rounding then loses half of the reflections).
 inline Vec3 facing_normal(Vec3 normal, Vec3 shading, Vec3 wo) {
   const float cos_o = dot(normal, wo);
+  const float side = cos_o < 0.0f ? -1.0f : 1.0f;
   const float twice = 2.0f * dot(shading, wo);
   const float above = fma(twice, dot(shading, normal), -cos_o);
-  if (above * cos_o >= 0.0f) return shading;
-  const Vec3 mirrored = fma(twice, shading, -wo);
-  const Vec3 level = fma(-above, normal, mirrored);
-  const Vec3 bent = fma(1.0f / length(level), level, wo);
+  const float least = min(0.5f * abs(cos_o), 0.01f);
+  if (above * side >= least) return shading;
+  const Vec3 level = fma(-above, normal, fma(twice, shading, -wo));
+  const Vec3 mirrored = fma(sqrt(1.0f - least * least) / length(level), level, normal * (side * least));
+  const Vec3 bent = mirrored + wo;
   const float squared = length_squared(bent);
-  if (!(squared > 0.0f) || !is_finite(squared)) return normal;
-  const float size = 1.0f / sqrt(squared);
-  return bent * (cos_o < 0.0f ? -size : size);
+  return squared > 0.0f && is_finite(squared) ? bent * (side / sqrt(squared)) : normal;
 }
 
 }  // namespace accuray
