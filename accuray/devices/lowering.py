@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import hashlib
+from collections.abc import Callable, Iterable
 from functools import partial
 from math import fsum
 from typing import Any, NamedTuple
@@ -15,6 +16,7 @@ from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
 from accuray.scene.spectrum import interpolate
+from accuray.scene.textures import CHANNELS, TextureUse
 
 Values = dict[str, Any]
 
@@ -73,12 +75,16 @@ class _Lowering:
         self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
         self._spectra: dict[Spectrum, Any] = {}
+        self._pictures: dict[tuple[str, tuple[int, ...], bytes], int] = {}
+        self.textures: dict[str, int] = {}
         self.materials: dict[str, int] = {}
         self.reports: dict[str, MeshReport] = dict(scene.mesh_reports)
 
     def block(self) -> Any:
         """Adds everything in a fixed order and finishes the block."""
         builder, film = self.builder, self.scene.film
+        for name, texture in self.scene.textures.items():
+            self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
         for name, material in self.scene.materials.items():
             self._guard(f"materials.{name}", partial(self._add_material, name, material))
         self._add_shapes()
@@ -102,26 +108,57 @@ class _Lowering:
 
     def _values(self, family: str, table: Values) -> Values:
         """The numbers, vectors, choices and spectra of a table; the rest has no place in the kernels' structs."""
+        return self._values_of(schemas.current().family(family).types[table["type"]].params, table)
+
+    def _values_of(self, params: Iterable[schemas.Param], table: Values) -> Values:
         values: Values = {}
-        for param in schemas.current().family(family).types[table["type"]].params:
+        for param in params:
             value = table.get(param.name)
-            if value is None or param.kind in ("text", "file", "transform", "array", "reference"):
+            if value is None or param.kind in ("text", "file", "transform", "array"):
+                continue
+            if param.kind == "reference" and not param.texturable:
                 continue
             if param.kind == "enum":
                 value = param.choices.index(value)
+            elif isinstance(value, TextureUse):
+                value = self._textured(value)
             elif param.kind == "spectrum":
                 value = self._spectrum(value)
-            values[param.name] = float(value) if param.kind in ("float", "int", "enum") else value
+            elif param.kind == "vec":
+                value = (*value, 0.0, 0.0)[:3]
+            values[param.name] = float(value) if isinstance(value, (int, float)) else value
         return values
 
+    def _add_texture(self, name: str, texture: Values) -> None:
+        pixels = texture.get("pixels")
+        picture = None if pixels is None else self._picture(pixels)
+        srgb = texture.get("color_space") == "srgb"
+        values = self._values("texture", texture)
+        self.textures[name] = self.builder.add_texture(texture["type"], values, picture, srgb)
+
+    def _picture(self, pixels: NDArray[Any]) -> int:
+        """The builder's number of a picture; those of equal content share one."""
+        key = (pixels.dtype.str, pixels.shape, hashlib.sha256(pixels.data).digest())
+        if key not in self._pictures:
+            self._pictures[key] = self.builder.add_picture(pixels)
+        return self._pictures[key]
+
+    def _textured(self, use: TextureUse) -> Any:
+        """The builder's form of a value that a texture gives."""
+        from accuray._core import lower as core
+
+        texture = self.textures[use.texture]
+        if use.channel:
+            channel = CHANNELS.index(use.channel) if use.channel in CHANNELS else 0
+            return core.TexturedReal(texture, channel, use.scale)
+        self._need_rgb_table()
+        return self.builder.textured_reflectance(texture, use.scale)
+
     def _add_material(self, name: str, material: Values) -> None:
-        emission = material["emission"]
-        self.materials[name] = self.builder.add_material(
-            material["type"],
-            self._values("bsdf", material),
-            None if emission is None else self._spectrum(emission),
-            material["emission_sides"] == "both",
-        )
+        header = self._values_of(schemas.current().family("material").common, material)
+        emission = header.pop("emission", None)
+        values = self._values("bsdf", material)
+        self.materials[name] = self.builder.add_material(material["type"], values, header, emission)
 
     def _add_shapes(self) -> None:
         """First what the scene shows itself, then the prototypes, group by group, with their instances."""
@@ -200,11 +237,15 @@ class _Lowering:
             return b.spectrum_sellmeier(s.A0, list(s.B), list(s.C), s.scale)
         if s.form == "cauchy":
             return b.spectrum_cauchy(s.A0, s.B[0], s.scale)
-        if len(set(s.rgb)) > 1 and not self._has_rgb_table:
-            b.set_rgb_table(*rgb_table(self.cmf))
-            self._has_rgb_table = True
+        if len(set(s.rgb)) > 1:
+            self._need_rgb_table()
         add = b.spectrum_rgb_emission if s.role == "emission" else b.spectrum_rgb_reflectance
         return add(*s.rgb, s.scale)
+
+    def _need_rgb_table(self) -> None:
+        if not self._has_rgb_table:
+            self.builder.set_rgb_table(*rgb_table(self.cmf))
+            self._has_rgb_table = True
 
 
 def colour_arrays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -1,7 +1,7 @@
 """Scene and mesh files: one module per format, and one line for it here.
 
-Importing this package registers the mesh readers, so ``Scene.from_dict`` can take mesh files too: the public
-``accuray.Scene`` comes from here.
+Importing this package registers the readers of meshes and images, so ``Scene.from_dict`` can take such files too:
+the public ``accuray.Scene`` comes from here.
 """
 
 from __future__ import annotations
@@ -10,9 +10,10 @@ from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import Any
 
-from accuray.formats import json, mesh, toml
+from accuray.formats import image, json, mesh, toml
 from accuray.formats.reading import SceneReader, load_scene
 from accuray.scene import Scene
+from accuray.scene.images import register_image_reader
 from accuray.scene.meshes import MeshReader, register_reader
 
 __all__ = ["MESH_READERS", "SCENE_READERS", "Scene", "load"]
@@ -29,6 +30,7 @@ MESH_READERS: dict[str, MeshReader] = {
 
 for _suffix, _reader in MESH_READERS.items():
     register_reader(_suffix, _reader)
+register_image_reader(image.read)
 
 
 def load(

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from accuray.scene.schema import Schema, Type
 from accuray.scene.spectrum import Spectrum
+from accuray.scene.textures import TextureUse
 
 if TYPE_CHECKING:
     from accuray.scene.scene import Scene
@@ -40,6 +41,7 @@ def scene_identity(scene: Scene, schema: Schema) -> str:
 
 def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
     """The canonical description: nested dicts of texts, integers and truth values."""
+    textures = schema.family("texture").types
     shapes, lights = schema.family("shape").types, schema.family("light").types
     return {
         "sampling_version": schema.sampling_version,
@@ -48,6 +50,7 @@ def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
         "filter": _object(scene.filter, schema.family("filter").types),
         "camera": _object(scene.camera, schema.family("camera").types),
         "integrator": _object(scene.integrator, schema.family("integrator").types),
+        "textures": {name: _object(item, textures) for name, item in scene.textures.items()},
         "materials": {name: _object(item, schema.material_types()) for name, item in scene.materials.items()},
         "lights": {name: _object(item, lights) for name, item in scene.lights.items()},
         "shapes": {name: _object(item, shapes) for name, item in scene.shapes.items()},
@@ -83,6 +86,8 @@ def _value(value: Any) -> Any:
     if isinstance(value, Spectrum):
         fields = {key: _value(getattr(value, key)) for key in _FIELDS_OF_FORM[value.form]}
         return {"form": value.form, "scale": value.scale.hex(), **fields}
+    if isinstance(value, TextureUse):
+        return {"texture": value.texture, "scale": value.scale.hex(), "channel": value.channel}
     if isinstance(value, Path):
         return {"sha256": _file_hash(value)}
     return {"dtype": value.dtype.str, "shape": list(value.shape), "sha256": hashlib.sha256(value).hexdigest()}

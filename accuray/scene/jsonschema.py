@@ -11,6 +11,7 @@ from accuray.scene.kinds import vector_length, vocabulary
 from accuray.scene.scene import FORMAT_VERSION
 from accuray.scene.schema import Family, Param, Type
 from accuray.scene.spectra import ROLES_OF_FORM
+from accuray.scene.textures import CHANNELS
 from accuray.scene.units import LENGTH_UNITS, describe
 
 Node = dict[str, Any]
@@ -37,6 +38,7 @@ def json_schema() -> Node:
         "camera": _one_of(schema.family("camera").types),
         "integrator": _one_of(schema.family("integrator").types),
         "spectra": _named({"$ref": "#/$defs/spectrum"}),
+        "textures": _named(_one_of(schema.family("texture").types)),
         "materials": _named(_one_of(schema.material_types())),
         "lights": _named(_one_of(schema.family("light").types)),
         "shapes": _named(_one_of(schema.family("shape").types)),
@@ -48,7 +50,7 @@ def json_schema() -> Node:
         "properties": sections,
         "required": ["accuray"],
         "additionalProperties": False,
-        "$defs": {"spectrum": _spectrum(), "transform": _transform()},
+        "$defs": {"spectrum": _spectrum(), "transform": _transform(), "textured": _textured()},
     }
 
 
@@ -100,6 +102,8 @@ def _one_alternative(set_name: str, alternatives: dict[str, list[Param]]) -> Nod
 
 def _param(param: Param) -> Node:
     node = dict(_KINDS[param.kind](param))
+    if param.texturable:
+        node = {"anyOf": [node, {"$ref": "#/$defs/textured"}]}
     description = param.doc
     if param.unit and param.unit != "1":
         description += f" In {param.unit}." if param.unit != "m" else " A length."
@@ -197,6 +201,20 @@ def _spectrum() -> Node:
     }
     names = {"type": "string", "description": "A name in [spectra], an illuminant, a glass, or a temperature."}
     return {"anyOf": [_NUMBER, forms["rgb"], names, table]}
+
+
+def _textured() -> Node:
+    return {
+        "type": "object",
+        "description": "Given by a texture.",
+        "properties": {
+            "texture": {"type": "string"},
+            "scale": {"type": "number", "minimum": 0},
+            "channel": {"enum": list(CHANNELS), "description": "Of the texture, for a number."},
+        },
+        "required": ["texture"],
+        "additionalProperties": False,
+    }
 
 
 def _transform() -> Node:

@@ -1,7 +1,8 @@
 """One resolver per parameter kind: from what the scene says to the canonical value.
 
 Canonical values: bool, int, float (metres, radians, ...), tuple of floats (vec), str (enum, text, reference),
-list of str (references to shapes), float64 4x4 array (transform), float32 and uint32 arrays, Spectrum, Path.
+list of str (references to shapes), float64 4x4 array (transform), float32 and uint32 arrays, Spectrum, Path;
+pictures (height, width, channels); TextureUse for what a texture gives.
 """
 
 from __future__ import annotations
@@ -11,10 +12,12 @@ from typing import Any
 
 from accuray.scene.arrays import parse_array
 from accuray.scene.errors import Where
+from accuray.scene.images import parse_pixels
 from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
 from accuray.scene.schema import Param
 from accuray.scene.scope import SECTION_OF, Scope
 from accuray.scene.spectra import metal_names, parse_spectrum
+from accuray.scene.textures import TextureUse, names_texture, parse_use
 from accuray.scene.transforms import parse_transform
 
 VOCABULARIES: dict[str, Callable[[], list[str]]] = {"metal": metal_names}
@@ -26,6 +29,8 @@ ABSOLUTE = "absolute"
 
 def resolve_value(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     """The canonical value of a parameter that the scene gives. Raises SceneError."""
+    if names_texture(value):
+        return parse_use(param, value, where, scope)
     return _RESOLVERS[param.kind](param, value, where, scope)
 
 
@@ -89,10 +94,12 @@ def _transform(_param: Param, value: Any, where: Where, _scope: Scope) -> Any:
 
 
 def _array(param: Param, value: Any, where: Where, _scope: Scope) -> Any:
-    return parse_array(param, value, where)
+    return parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
 
 
-def _reference(param: Param, value: Any, where: Where, scope: Scope) -> str | list[str]:
+def _reference(param: Param, value: Any, where: Where, scope: Scope) -> str | list[str] | TextureUse:
+    if param.role == "texture":
+        return parse_use(param, value, where, scope)
     if param.role != "shape":
         return _referred(param, value, where, scope)
     names = value if isinstance(value, (list, tuple)) else [value]

@@ -7,6 +7,7 @@ from typing import Any
 
 from accuray.scene.arrays import check_together
 from accuray.scene.errors import Document, Source, Where
+from accuray.scene.images import read_pixels
 from accuray.scene.kinds import resolve_value, vocabulary
 from accuray.scene.meshes import fill_from_file
 from accuray.scene.schema import Param, Type
@@ -104,12 +105,14 @@ def _default(param: Param, scope: Scope) -> Any:
 
 
 def _expand_shorthands(type_: Type, values: dict[str, Any], where: Where, scope: Scope) -> None:
-    """A mesh file fills the arrays that it stands for, a metal's name its refractive index."""
+    """A file fills the arrays that it stands for, a metal's name its refractive index."""
     for param in type_.params:
         value = values[param.name]
         if value is None or not param.group:
             continue
         if vocabulary(param) is not None:
             values.update({key: item for key, item in metal_spectra(value).items() if key in values})
+        elif param.role == "image":
+            values["pixels"] = read_pixels(value, where.child(param.name), scope)
         elif param.kind == "file":
             scope.mesh_reports[str(where.path[-1])] = fill_from_file(type_, values, value, where.child(param.name))

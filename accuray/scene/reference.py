@@ -66,6 +66,9 @@ emissions) or `"zero"`; emissions take `normalize = true` (Y = 1 before `scale`)
 Here Y = integral(L ybar) / integral(ybar), and L is in W m^-2 sr^-1 nm^-1.
 """
 
+_TEXTURES = """A parameter whose kind ends in "or texture" takes `{ texture = "NAME" }` as well, with `scale = number`
+to multiply it; one that is a number takes `channel = "red"` (default), `"green"`, `"blue"` or `"alpha"`."""
+
 
 def reference_markdown() -> str:
     """The whole page as Markdown, ending with a line end."""
@@ -90,6 +93,7 @@ def reference_markdown() -> str:
         note = f"One of the types below; `{family.default}` if there is no such table."
         parts.append(_family(title, section, note, family.types.values()))
     header_names = "Besides its own parameters every material has the last ones of its table."
+    parts.append(_family("Textures", "textures.NAME", _TEXTURES, schema.family("texture").types.values()))
     parts.append(_family("Materials", "materials.NAME", header_names, schema.material_types().values()))
     parts.append(_family("Lights", "lights.NAME", "", schema.family("light").types.values()))
     parts.append(_family("Shapes", "shapes.NAME", "", schema.family("shape").types.values()))
@@ -119,6 +123,12 @@ def _table(params: Iterable[Param]) -> str:
 
 
 def _kind(param: Param) -> str:
+    if param.texturable and param.kind != "reference":
+        return _plain_kind(param) + " or texture"
+    return _plain_kind(param)
+
+
+def _plain_kind(param: Param) -> str:
     if param.kind == "spectrum":
         return f"spectrum ({param.role})"
     if param.kind == "reference":

@@ -18,10 +18,11 @@ from accuray.scene.paths import Confinement
 from accuray.scene.scope import Scope
 from accuray.scene.shapes import check_shapes
 from accuray.scene.spectra import check_unused
+from accuray.scene.textures import check_coordinates, check_opacity, settle_colour_spaces
 from accuray.scene.units import LENGTH_UNITS
 
 FORMAT_VERSION = 1
-SECTIONS = ("render", "film", "camera", "integrator", "spectra", "materials", "lights", "shapes")
+SECTIONS = ("render", "film", "camera", "integrator", "spectra", "textures", "materials", "lights", "shapes")
 FILE_KEYS = ("accuray", "length_unit", "include")
 FILM_BITS = 24
 MAX_NAME = 256
@@ -31,10 +32,10 @@ MAX_NAME = 256
 class Scene:
     """A scene ready for rendering; treat it as read-only.
 
-    ``film``, ``filter``, ``camera``, ``integrator`` and ``render`` are single tables; ``materials``, ``lights``
-    and ``shapes`` map names, in sorted order, to tables. Each table has "type" where its family has types, and
-    every parameter of that type: SI values as ``accuray.scene.kinds`` describes, None for what is neither given
-    nor has a default. ``path`` is the file the scene was read from, None for scenes built in Python;
+    ``film``, ``filter``, ``camera``, ``integrator`` and ``render`` are single tables; ``textures``, ``materials``,
+    ``lights`` and ``shapes`` map names, in sorted order, to tables. Each table has "type" where its family has
+    types, and every parameter of that type: SI values as ``accuray.scene.kinds`` describes, None for what is neither
+    given nor has a default. ``path`` is the file the scene was read from, None for scenes built in Python;
     ``mesh_reports`` says, by shape, what was left out of mesh files or made up.
     """
 
@@ -48,6 +49,7 @@ class Scene:
     shapes: dict[str, dict[str, Any]]
     path: Path | None = None
     mesh_reports: dict[str, dict[str, Any]] = field(default_factory=dict)
+    textures: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     @classmethod
     def from_dict(
@@ -84,10 +86,14 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
             raise top.child(key).unknown(key, "section", (*FILE_KEYS, *SECTIONS))
     scope = Scope(document, schema, Confinement.around(document.top.folder, roots))
     film, pixel_filter = _film(scope)
+    textures = _named("textures", schema.family("texture").types, scope)
     materials = _named("materials", schema.material_types(), scope)
     lights = _named("lights", schema.family("light").types, scope)
     shapes = _named("shapes", schema.family("shape").types, scope)
     check_shapes(shapes, schema, top.child("shapes"))
+    settle_colour_spaces(textures, materials, top.child("textures"))
+    check_opacity(materials, top)
+    check_coordinates(textures, materials, shapes, schema, top)
     _check_spectra(scope)
     camera = _single("camera", data, top.child("camera"), scope)
     film["exposure"] = resolve_exposure(film, camera, top.child("film"))
@@ -103,6 +109,7 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
         shapes=shapes,
         path=path,
         mesh_reports=scope.mesh_reports,
+        textures=textures,
     )
 
 

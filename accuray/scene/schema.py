@@ -42,12 +42,16 @@ class Param:
 
 @dataclass(frozen=True)
 class Type:
-    """A type of a family: ``params`` hold its own parameters and the common ones of its family."""
+    """A type of a family: ``params`` hold its own parameters and the common ones of its family.
+
+    ``reads_uv``: a texture that needs shapes with texture coordinates.
+    """
 
     name: str
     doc: str
     params: tuple[Param, ...]
     keeps: tuple[str, ...] = ()
+    reads_uv: bool = False
 
     def sets(self) -> dict[str, dict[str, list[Param]]]:
         """The "exactly one of" sets: set name -> alternative -> its parameters."""
@@ -105,6 +109,7 @@ def _family(name: str, family: dict[str, Any]) -> Family:
             entry.get("doc", ""),
             (*(_param(param) for param in entry["params"]), *common),
             tuple(entry.get("keeps", ())),
+            bool(entry.get("reads_uv", False)),
         )
         for entry in family.get("types", ())
     }

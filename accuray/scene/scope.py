@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from accuray.scene.errors import Document
 from accuray.scene.paths import Confinement
 from accuray.scene.schema import Schema
 
-SECTION_OF = {"material": "materials", "light": "lights", "shape": "shapes"}
+SECTION_OF = {"texture": "textures", "material": "materials", "light": "lights", "shape": "shapes"}
 """Families whose objects have names, and the section that holds them."""
 
 
@@ -18,7 +19,7 @@ class Scope:
     """The document under validation with its schema and folders.
 
     ``defaults`` holds resolved defaults by the identity of their parameter; ``mesh_reports`` collects what the
-    readers of mesh files counted, by the name of the shape.
+    readers of mesh files counted, by the name of the shape; ``images`` keeps the pictures that were read, by file.
     """
 
     document: Document
@@ -26,6 +27,7 @@ class Scope:
     files: Confinement
     defaults: dict[int, Any] = field(default_factory=dict)
     mesh_reports: dict[str, dict[str, Any]] = field(default_factory=dict)
+    images: dict[Path, Any] = field(default_factory=dict)
 
     def names(self, section: str) -> list[str]:
         """Names defined in a section ("materials", "spectra", ...), in the order of the file."""

@@ -12,6 +12,7 @@ namespace {
 
 Value to_value(nb::handle object) {
   if (nb::isinstance<SpectrumRef>(object)) return nb::cast<SpectrumRef>(object);
+  if (nb::isinstance<TexturedReal>(object)) return nb::cast<TexturedReal>(object);
   if (nb::isinstance<nb::bool_>(object)) return nb::cast<bool>(object) ? 1.0 : 0.0;
   if (nb::isinstance<nb::float_>(object) || nb::isinstance<nb::int_>(object)) return nb::cast<double>(object);
   return nb::cast<std::array<double, 3>>(object);
@@ -91,13 +92,63 @@ void bind_spectra(nb::class_<SceneBuilder>& builder) {
           "wavelength"_a, "Value of a spectrum at a wavelength in nm, as kernels evaluate it.");
 }
 
+using Pixels = nb::ndarray<nb::ro, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+
+TexelFormat format_of(const Pixels& pixels) {
+  const nb::dlpack::dtype type = pixels.dtype();
+  if (type == nb::dtype<uint8_t>()) return TexelFormat::u8;
+  if (type == nb::dtype<uint16_t>()) return TexelFormat::u16;
+  if (type == nb::dtype<float>()) return TexelFormat::single;
+  if (type.code == static_cast<uint8_t>(nb::dlpack::dtype_code::Float) && type.bits == 16) return TexelFormat::half;
+  throw std::invalid_argument("texels are 8 or 16 bit integers, half or single precision floats");
+}
+
+// The picture reads the array where it is and keeps it alive; any thread may be the last to let go of it.
+Picture to_picture(const Pixels& pixels) {
+  std::shared_ptr<const void> owner(new Pixels(pixels), [](const void* held) {
+    const nb::gil_scoped_acquire acquire;
+    delete static_cast<const Pixels*>(held);
+  });
+  const auto size = [&](size_t axis) { return static_cast<uint32_t>(pixels.shape(axis)); };
+  return {{std::move(owner), static_cast<const uint8_t*>(pixels.data()), pixels.nbytes()},
+          size(1),
+          size(0),
+          size(2),
+          format_of(pixels)};
+}
+
+void bind_textures(nb::class_<SceneBuilder>& builder) {
+  builder
+      .def(
+          "add_picture",
+          [](SceneBuilder& b, const Pixels& pixels) { return b.textures().add_picture(to_picture(pixels)); },
+          "pixels"_a, "(height, width, channels) of uint8, uint16, float16 or float32; it must not change.")
+      .def(
+          "add_texture",
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, std::optional<uint32_t> picture,
+             bool srgb) {
+            std::optional<PictureUse> use;
+            if (picture) use = PictureUse{*picture, srgb};
+            return b.textures().add(type, to_values(values), use);
+          },
+          "type"_a, "values"_a, "picture"_a.none(), "srgb"_a)
+      .def(
+          "textured_reflectance",
+          [](SceneBuilder& b, uint32_t texture, double scale) {
+            return b.spectra().textured_reflectance(texture, scale);
+          },
+          "texture"_a, "scale"_a);
+}
+
 void bind_parts(nb::class_<SceneBuilder>& builder) {
   builder
       .def(
           "add_material",
-          [](SceneBuilder& b, const std::string& type, const nb::dict& values, std::optional<SpectrumRef> emission,
-             bool both_sides) { return b.add_material(type, to_values(values), emission, both_sides); },
-          "type"_a, "values"_a, "emission"_a.none(), "both_sides"_a)
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, const nb::dict& header,
+             std::optional<SpectrumRef> emission) {
+            return b.add_material(type, to_values(values), to_values(header), emission);
+          },
+          "type"_a, "values"_a, "header"_a, "emission"_a.none())
       .def(
           "add_mesh",
           [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
@@ -174,6 +225,8 @@ void bind_lower(nb::module_& module) {
   });
   nb::module_ lower = module.def_submodule("lower", "From resolved descriptions to the lowered scene.");
   nb::class_<SpectrumRef>(lower, "SpectrumRef");
+  nb::class_<TexturedReal>(lower, "TexturedReal")
+      .def(nb::init<uint32_t, uint32_t, double>(), "texture"_a, "channel"_a, "scale"_a);
   nb::class_<Block>(lower, "Block")
       .def_prop_ro("bytes", &Block::bytes)
       .def(
@@ -193,6 +246,7 @@ void bind_lower(nb::module_& module) {
       "cmf"_a, "d65"_a,
       "cmf: (471, 3) colour matching functions; d65: (471,) scaled to Y = 1; both at 360, 361, ... 830 nm.");
   bind_spectra(builder);
+  bind_textures(builder);
   bind_parts(builder);
 
   lower.attr("SOLIDS") = names_of(Solids{});

@@ -85,6 +85,21 @@ nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vect
   return nb::make_tuple(to_numpy(std::move(value), 4), to_numpy(std::move(pdf), 0));
 }
 
+// Values of a texture (N, 4) at points: texture coordinates (N, 2), and positions (N, 3) in the shape's own space.
+nb::object texture_values(const LoadedScene& scene, uint32_t texture, const Rows<float, 2>& uv, const Vectors& points) {
+  require_rows(uv.shape(0), points.shape(0));
+  const SceneView& view = scene.accel.view();
+  if (texture >= view.root->textures.count) throw std::invalid_argument("there is no such texture");
+  std::vector<float> values;
+  for (size_t i = 0; i < uv.shape(0); ++i) {
+    TexturePoint at = middle;
+    at.uv = {uv.data()[2 * i], uv.data()[2 * i + 1]};
+    at.point = row(points, i);
+    put(values, texture_value(view, texture, at));
+  }
+  return to_numpy(std::move(values), 4);
+}
+
 nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference,
                       const Rows<float, 2>& u) {
   const SceneView& view = scene.accel.view();
@@ -273,6 +288,7 @@ void bind_probe(nb::module_& module) {
   nb::module_ probe = module.def_submodule("probe", "Parts of the kernels over arrays, for tests and study.");
   probe.def("bsdf_sample", &bsdf_sample, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "u"_a);
   probe.def("bsdf_eval", &bsdf_eval, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "wi"_a);
+  probe.def("texture_values", &texture_values, "scene"_a, "texture"_a, "uv"_a, "points"_a);
   probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);
   probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);
   probe.def("light_names", &light_names, "scene"_a);

@@ -7,13 +7,14 @@
 #include "kernels/geometry/shapes.h"
 #include "kernels/integrator/list.h"
 #include "kernels/light/list.h"
+#include "kernels/texture/list.h"
 
 namespace accuray::bindings {
 
 namespace {
 
 // Changes whenever a change of the code changes what a sample computes; part of a scene's identity.
-constexpr int kSamplingVersion = 1;
+constexpr int kSamplingVersion = 2;
 
 const char* kind_name(Kind kind) {
   constexpr const char* names[] = {"bool", "int",       "float", "vec",       "enum",    "text",
@@ -81,6 +82,7 @@ nb::dict family(TypeList<Ts...>, nb::list common) {
     d["doc"] = T::doc;
     d["params"] = params_of<T>();
     d["keeps"] = laws_of<T>();
+    if constexpr (requires { T::reads_uv; }) d["reads_uv"] = T::reads_uv;
     types.append(d);
   };
   (add(Type<Ts>{}), ...);
@@ -93,6 +95,7 @@ nb::dict family(TypeList<Ts...>, nb::list common) {
 nb::dict tables() {
   nb::dict families;
   families["bsdf"] = family(Bsdfs{}, nb::list());
+  families["texture"] = family(Textures{}, nb::list());
   families["light"] = family(NamedLights{}, nb::list());
   families["shape"] = family(Shapes{}, params_of<ShapeCommon>());
   families["camera"] = family(NamedCameras{}, params_of<CameraCommon>());

@@ -7,6 +7,7 @@
 
 #include "kernels/geometry/ray.h"
 #include "kernels/math/transform.h"
+#include "kernels/spectrum/rgb.h"
 #include "kernels/spectrum/spectrum.h"
 
 namespace accuray {
@@ -35,12 +36,25 @@ struct InteriorRecord {
   uint32_t priority;  // where bodies overlap the higher fills; 0: ior is relative to whatever is around
 };
 
+// A number that may come from a texture; read by ShadingPoint::real().
+struct RealRef {
+  float value;       // the number itself, or the factor of the texture's
+  uint32_t texture;  // index in SceneView::textures; none: the number stands alone
+  uint32_t channel;  // of the texture: red, green, blue or alpha
+  float low, high;   // what the parameter allows, for textures
+};
+
 struct MaterialRecord {
   Tagged bsdf;
-  uint32_t interior;  // none: not the surface of a dielectric body
+  uint32_t interior;     // none: not the surface of a dielectric body
   SpectrumRef emission;  // none: does not emit
   uint32_t emits_both_sides;
   uint32_t reads_texture_point;  // it is textured, or its BSDF is oriented
+  uint32_t oriented;             // its BSDF's local x axis follows dpdu
+  RealRef opacity;               // share of the rays that the surface stops
+  uint32_t normal_map;           // texture; none: the shape's own normals
+  uint32_t normal_map_down;      // its green points down (DirectX)
+  float normal_strength;         // factor of its slopes
 };
 
 struct GeometryRecord {
@@ -68,9 +82,10 @@ struct Root {
   uint32_t version;
   uint32_t environment;  // index of the constant environment light; none: black
   uint32_t hide_environment;
+  uint32_t any_opacity;     // some material lets rays through
   uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
-  uint32_t reserved[3];
+  uint32_t reserved[2];
   Tagged camera, filter, integrator;
   Slice<MaterialRecord> materials;
   Slice<InteriorRecord> interiors;
@@ -82,6 +97,9 @@ struct Root {
   Slice<uint32_t> lights_of_instance;
   Slice<SpectrumRecord> spectra;
   Slice<float> tables;
+  Slice<Tagged> textures;
+  Slice<float> rgb_nodes;  // the table of rgb.h in a section of its own; empty if no spectrum is textured
+  Slice<float> rgb_coefficients;
   Slice<float> response;         // sensor at 360 .. 830 nm, four channels per node
   Slice<float> lambda_cdf;       // wavelength sampling: running sums, 471 entries
   Slice<uint32_t> lambda_guide;  // first cell of lambda_cdf that each of lambda_guide_size parts of [0, 1) meets
@@ -101,6 +119,8 @@ struct SceneView {
   const uint32_t* lights_of_instance;
   const SpectrumRecord* spectra;
   const float* tables;
+  const Tagged* textures;
+  RgbTable rgb;
   const float* response;
   const float* lambda_cdf;
   const uint32_t* lambda_guide;
@@ -132,6 +152,8 @@ struct SceneView {
     view.lights_of_instance = view.at(root.lights_of_instance);
     view.spectra = view.at(root.spectra);
     view.tables = view.at(root.tables);
+    view.textures = view.at(root.textures);
+    view.rgb = {view.at(root.rgb_nodes), view.at(root.rgb_coefficients), static_cast<int32_t>(root.rgb_nodes.count)};
     view.response = view.at(root.response);
     view.lambda_cdf = view.at(root.lambda_cdf);
     view.lambda_guide = view.at(root.lambda_guide);

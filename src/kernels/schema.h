@@ -30,7 +30,7 @@ struct Param {
   const char* role = "";     // reflectance, emission, index; material, shape; shape of an array
   const char* group = "";    // "set:alternative": exactly one alternative of a set is given; "set?:...": at most one
   bool required = false;
-  bool texturable = false;
+  bool texturable = false;  // takes a texture; a real's member is then a RealRef
   bool animatable = false;
   uint32_t member = no_member;  // byte offset in the type's struct
 };
@@ -43,6 +43,14 @@ struct ParamList {
 template <class... P>
 constexpr auto param_list(P... p) {
   return ParamList<sizeof...(P)>{{p...}};
+}
+
+template <uint32_t N, uint32_t M>
+constexpr ParamList<N + M> joined(const ParamList<N>& a, const ParamList<M>& b) {
+  ParamList<N + M> both;
+  for (uint32_t i = 0; i < N; ++i) both.items[i] = a.items[i];
+  for (uint32_t i = 0; i < M; ++i) both.items[N + i] = b.items[i];
+  return both;
 }
 
 struct NoParams {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "kernels/bsdf/list.h"
+#include "kernels/texture/opacity.h"
 
 namespace accuray {
 
@@ -56,20 +57,42 @@ void move_mesh(const Matrix& m, MeshArrays& mesh) {
 
 }  // namespace
 
-SceneBuilder::SceneBuilder(ColourData colour) : spectra_(std::move(colour)), lights_(pool_, spectra_) {
+SceneBuilder::SceneBuilder(ColourData colour)
+    : spectra_(std::move(colour)), textures_(pool_, spectra_, bulk_), lights_(pool_, spectra_) {
   root_.version = block_version;
   root_.environment = none;
   root_.film_step = 0x1p-24f;
 }
 
-uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
-                                    bool both_sides) {
-  const bool emits = emission && !spectra_.is_zero(*emission);
-  const Tagged bsdf = lower_type(Bsdfs{}, type, values, pool_);
+bool SceneBuilder::is_textured(const Value& value) const {
+  const auto* spectrum = std::get_if<SpectrumRef>(&value);
+  return std::holds_alternative<TexturedReal>(value) || (spectrum != nullptr && spectra_.is_textured(*spectrum));
+}
+
+uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, const Values& header,
+                                    std::optional<SpectrumRef> emission) {
+  MaterialRecord material{};
+  material.bsdf = lower_type(Bsdfs{}, type, values, pool_);
+  material.interior = add_interior(values);
+  material.emission = {emission && !spectra_.is_zero(*emission) ? emission->index : none};
+  material.emits_both_sides = number_of(header, "emission_sides") != 0.0 ? 1u : 0u;
+  material.opacity = real_ref(param_named<MaterialCommon>("opacity"), value_of(header, "opacity"));
+  if (!is_always_opaque(material)) root_.any_opacity = 1;
+  material.normal_map = none;
+  if (header.contains("normal_map")) {
+    const auto& map = std::get<TexturedReal>(value_of(header, "normal_map"));
+    material.normal_map = map.texture;
+    material.normal_strength = static_cast<float>(map.scale);
+    material.normal_map_down = number_of(header, "normal_map_convention") != 0.0 ? 1u : 0u;
+  }
+  const auto any_textured = [&](const Values& some) {
+    return std::any_of(some.begin(), some.end(), [&](const auto& named) { return is_textured(named.second); });
+  };
   const bool oriented =
-      dispatch(Bsdfs{}, bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::oriented; }; });
-  materials_.push_back(
-      {bsdf, add_interior(values), {emits ? emission->index : none}, both_sides ? 1u : 0u, oriented ? 1u : 0u});
+      dispatch(Bsdfs{}, material.bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::oriented; }; });
+  material.oriented = oriented ? 1u : 0u;
+  material.reads_texture_point = oriented || any_textured(values) || any_textured(header) ? 1u : 0u;
+  materials_.push_back(material);
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 
@@ -122,6 +145,14 @@ uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& m
   return static_cast<uint32_t>(light_of_primitive_.size() - 1);
 }
 
+template <class T>
+Slice<T> SceneBuilder::store(std::vector<T> values) {
+  if (values.empty()) return {};
+  const Slice<T> slice{0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(values.size())};
+  bulk_.push_back(section_of(std::move(values)));
+  return slice;
+}
+
 uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material,
                                 bool prototype) {
   if (transform) move_mesh(*transform, arrays);
@@ -131,15 +162,10 @@ uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& 
   }
   const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material));
   Mesh mesh{};
-  const auto store = [&]<class T>(Slice<T>& slice, std::vector<T>&& values) {
-    if (values.empty()) return;
-    slice = {0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(values.size())};
-    bulk_.push_back(section_of(std::move(values)));
-  };
-  store(mesh.positions, std::move(arrays.positions));
-  store(mesh.indices, std::move(arrays.indices));
-  store(mesh.normals, std::move(arrays.normals));
-  store(mesh.uvs, std::move(arrays.uvs));
+  mesh.positions = store(std::move(arrays.positions));
+  mesh.indices = store(std::move(arrays.indices));
+  mesh.normals = store(std::move(arrays.normals));
+  mesh.uvs = store(std::move(arrays.uvs));
   return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, bounds, prototype);
 }
 
@@ -225,8 +251,8 @@ void SceneBuilder::add_light(std::string_view type, const Values& values, Spectr
   });
 }
 
-void SceneBuilder::set_camera(std::string_view type, const Values& values, const Picture& picture) {
-  root_.camera = lower_camera(type, values, picture, pool_);
+void SceneBuilder::set_camera(std::string_view type, const Values& values, const FilmSize& film) {
+  root_.camera = lower_camera(type, values, film, pool_);
 }
 
 void SceneBuilder::set_filter(std::string_view type, const Values& values) {
@@ -257,6 +283,10 @@ Block SceneBuilder::finish() {
   for (uint32_t i = 0; i < lambda_nodes; ++i) {
     for (uint32_t c = 0; c < 3; ++c) response[4 * i + c] = static_cast<float>(cmf[3 * i + c] / y_sum);
   }
+  if (spectra_.any_textured()) {
+    root_.rgb_nodes = store(spectra_.rgb_nodes());
+    root_.rgb_coefficients = store(spectra_.rgb_table());
+  }
   RootWriter writer;
   root_.materials = writer.append(materials_);
   root_.interiors = writer.append(interiors_);
@@ -267,6 +297,7 @@ Block SceneBuilder::finish() {
   root_.light_of_primitive = writer.append(light_of_primitive_);
   root_.lights_of_instance = writer.append(lights_of_instance_);
   root_.spectra = writer.append(spectra_.records());
+  root_.textures = writer.append(textures_.records());
   root_.tables = writer.append(spectra_.tables());
   root_.response = writer.append(response);
   root_.lambda_cdf = writer.append(lambda_cdf);

@@ -1,7 +1,7 @@
 // From a resolved scene description to the block that engines render.
 //
-// Usage: add spectra, materials, shapes (first those of the scene itself, then prototypes), instances and lights, set
-// camera, filter, integrator and film, and call finish() once.
+// Usage: add pictures, textures, spectra, materials, shapes (first those of the scene itself, then prototypes),
+// instances and lights, set camera, filter, integrator and film, and call finish() once.
 #pragma once
 
 #include <optional>
@@ -16,6 +16,7 @@
 #include "lower/lights.h"
 #include "lower/parameters.h"
 #include "lower/spectra.h"
+#include "lower/textures.h"
 #include "lower/transform.h"
 
 namespace accuray {
@@ -33,9 +34,11 @@ class SceneBuilder {
   explicit SceneBuilder(ColourData colour);
 
   SpectrumPool& spectra() { return spectra_; }
+  TexturePool& textures() { return textures_; }
 
-  uint32_t add_material(std::string_view type, const Values& values, std::optional<SpectrumRef> emission,
-                        bool both_sides);
+  // `header`: the parameters of MaterialCommon but for the emission.
+  uint32_t add_material(std::string_view type, const Values& values, const Values& header,
+                        std::optional<SpectrumRef> emission);
   // Each returns the geometry's number. `prototype`: rendered through instances only; these come after all others.
   uint32_t add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype);
   uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,
@@ -44,7 +47,7 @@ class SceneBuilder {
                     std::optional<uint32_t> material);
   void add_light(std::string_view type, const Values& values, SpectrumRef emission);
 
-  void set_camera(std::string_view type, const Values& values, const Picture& picture);
+  void set_camera(std::string_view type, const Values& values, const FilmSize& film);
   void set_filter(std::string_view type, const Values& values);
   void set_integrator(std::string_view type, const Values& values);
   void set_film(double step, bool hide_environment);
@@ -52,11 +55,15 @@ class SceneBuilder {
   Block finish();
 
  private:
+  bool is_textured(const Value& value) const;
   uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds, bool prototype);
   // The lights of an instance's copy of a geometry, or none.
   uint32_t copied_lights(const Matrix& matrix, const GeometryRecord& geometry, const MaterialRecord& material);
   // What fills a body of a material with these values; none if it is no dielectric.
   uint32_t add_interior(const Values& values);
+  // A bulk array in a section of its own; an empty one stays nowhere.
+  template <class T>
+  Slice<T> store(std::vector<T> values);
   // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
   uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material);
   template <class Shape>
@@ -68,6 +75,8 @@ class SceneBuilder {
 
   SpectrumPool spectra_;
   ParameterPool pool_;
+  std::vector<Section> bulk_;  // sections 1, 2, ...
+  TexturePool textures_;
   LightTable lights_;
   Root root_{};
   std::vector<MaterialRecord> materials_;
@@ -76,7 +85,6 @@ class SceneBuilder {
   std::vector<InstanceRecord> instances_;
   std::vector<uint32_t> light_of_primitive_;
   std::vector<uint32_t> lights_of_instance_;
-  std::vector<Section> bulk_;   // sections 1, 2, ...
   std::vector<Bounds> bounds_;  // of each geometry, in its own space
   Bounds scene_bounds_;
 };

@@ -95,13 +95,13 @@ double half_picture(const Values& values, const Lens& lens) {
   return half_film * (1.0 / f - 1.0 / lens.focus);
 }
 
-Tagged camera_of(Type<Perspective>, const Values& values, const Picture& picture, ParameterPool& pool) {
+Tagged camera_of(Type<Perspective>, const Values& values, const FilmSize& film, ParameterPool& pool) {
   const Axes axes = axes_of(values);
   const Lens lens = lens_of(values, axes);
   const double half = half_picture(values, lens);
   const bool vertical = number_of(values, "fov_axis") == 0.0;
-  const double half_height = vertical ? half : half / picture.aspect();
-  const double half_width = vertical ? half * picture.aspect() : half;
+  const double half_height = vertical ? half : half / film.aspect();
+  const double half_width = vertical ? half * film.aspect() : half;
   Perspective pinhole{axes.pose(), static_cast<float>(half_width), static_cast<float>(half_height),
                       static_cast<float>(2.0 * half_width * number_of(values, "shift_x")),
                       static_cast<float>(2.0 * half_height * number_of(values, "shift_y"))};
@@ -114,15 +114,15 @@ Tagged camera_of(Type<Perspective>, const Values& values, const Picture& picture
   return {tag_of<ThinLens>(Cameras{}), pool.add(camera)};
 }
 
-void complete(Orthographic& camera, const Values& values, const Picture& picture) {
+void complete(Orthographic& camera, const Values& values, const FilmSize& film) {
   const double half = 0.5 * number_of(values, "height");
   camera.half_height = static_cast<float>(half);
-  camera.half_width = static_cast<float>(half * picture.aspect());
+  camera.half_width = static_cast<float>(half * film.aspect());
 }
 
-void complete(Panorama&, const Values&, const Picture&) {}
+void complete(Panorama&, const Values&, const FilmSize&) {}
 
-void complete(Fisheye& camera, const Values& values, const Picture& picture) {
+void complete(Fisheye& camera, const Values& values, const FilmSize& film) {
   const double fov = number_of(values, "fov");
   const SinCosDouble quarter = sincos(0.25 * fov);
   const auto at_most = [&](double degrees) {
@@ -147,10 +147,10 @@ void complete(Fisheye& camera, const Values& values, const Picture& picture) {
       break;
   }
   const double axis = number_of(values, "fov_axis");
-  const double diagonal = std::sqrt(picture.width * picture.width + picture.height * picture.height);
-  const double diameter = axis == 0.0 ? picture.height : (axis == 1.0 ? picture.width : diagonal);
-  camera.extent_x = static_cast<float>(picture.width / diameter);
-  camera.extent_y = static_cast<float>(picture.height / diameter);
+  const double diagonal = std::sqrt(film.width * film.width + film.height * film.height);
+  const double diameter = axis == 0.0 ? film.height : (axis == 1.0 ? film.width : diagonal);
+  camera.extent_x = static_cast<float>(film.width / diameter);
+  camera.extent_y = static_cast<float>(film.height / diameter);
 }
 
 double number_or(const Values& values, std::string_view name, double otherwise) {
@@ -171,9 +171,9 @@ float distortion_limit(const Distortion& d) {
   return static_cast<float>(r * r);
 }
 
-void complete(PinholeIntrinsics& camera, const Values& values, const Picture& picture) {
-  const double width = number_or(values, "image_width", picture.width);
-  const double height = number_or(values, "image_height", picture.height);
+void complete(PinholeIntrinsics& camera, const Values& values, const FilmSize& film) {
+  const double width = number_or(values, "image_width", film.width);
+  const double height = number_or(values, "image_height", film.height);
   const double fx = number_of(values, "fx");
   const double fy = number_or(values, "fy", fx);
   // The middle of the first pixel is 0, half a pixel from the picture's edge.
@@ -185,18 +185,18 @@ void complete(PinholeIntrinsics& camera, const Values& values, const Picture& pi
 
 // A camera whose table fills its struct, but for the pose and what complete() computes.
 template <class Camera>
-Tagged camera_of(Type<Camera>, const Values& values, const Picture& picture, ParameterPool& pool) {
+Tagged camera_of(Type<Camera>, const Values& values, const FilmSize& film, ParameterPool& pool) {
   auto camera = struct_of<Camera>(values);
   camera.pose = axes_of(values).pose();
-  complete(camera, values, picture);
+  complete(camera, values, film);
   return {tag_of<Camera>(Cameras{}), pool.add(camera)};
 }
 
 }  // namespace
 
-Tagged lower_camera(std::string_view type, const Values& values, const Picture& picture, ParameterPool& pool) {
+Tagged lower_camera(std::string_view type, const Values& values, const FilmSize& film, ParameterPool& pool) {
   return dispatch(NamedCameras{}, tag_named(NamedCameras{}, type),
-                  [&](auto named) { return camera_of(named, values, picture, pool); });
+                  [&](auto named) { return camera_of(named, values, film, pool); });
 }
 
 }  // namespace accuray

@@ -7,7 +7,7 @@
 namespace accuray {
 
 // The whole picture, in pixels.
-struct Picture {
+struct FilmSize {
   double width, height;
 
   double aspect() const { return width / height; }
@@ -15,6 +15,6 @@ struct Picture {
 
 // Lowers the camera of this type. Throws BadParameter for what a table cannot say, such as a camera that looks at
 // itself.
-Tagged lower_camera(std::string_view type, const Values& values, const Picture& picture, ParameterPool& pool);
+Tagged lower_camera(std::string_view type, const Values& values, const FilmSize& film, ParameterPool& pool);
 
 }  // namespace accuray

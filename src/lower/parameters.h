@@ -16,8 +16,15 @@
 
 namespace accuray {
 
-// A resolved value: number (also bool and the position of a choice), vector, or spectrum.
-using Value = std::variant<double, std::array<double, 3>, SpectrumRef>;
+// A number that a texture gives, times `scale`.
+struct TexturedReal {
+  uint32_t texture;
+  uint32_t channel;
+  double scale;
+};
+
+// A resolved value: number (also bool and the position of a choice), vector, spectrum, or textured number.
+using Value = std::variant<double, std::array<double, 3>, SpectrumRef, TexturedReal>;
 using Values = std::map<std::string, Value, std::less<>>;
 
 // What is wrong with the value of a parameter, and the parameter's name.
@@ -45,6 +52,16 @@ inline Vec3 to_vec3(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
+// The struct's member of a real parameter that takes textures.
+inline RealRef real_ref(const Param& param, const Value& value) {
+  if (const auto* textured = std::get_if<TexturedReal>(&value)) {
+    const auto bound = [](double x) { return static_cast<float>(clamp(x, -3e38, 3e38)); };
+    return {static_cast<float>(textured->scale), textured->texture, textured->channel, bound(param.low),
+            bound(param.high)};
+  }
+  return {static_cast<float>(std::get<double>(value)), none, 0, 0.0f, 0.0f};
+}
+
 // Writes one value into the struct of `size` bytes at `target` as the parameter's kind asks.
 inline void write_member(const Param& param, const Value& value, uint8_t* target, size_t size) {
   const auto put = [&](auto x) {
@@ -54,6 +71,7 @@ inline void write_member(const Param& param, const Value& value, uint8_t* target
   };
   switch (param.kind) {
     case Kind::real:
+      if (param.texturable) return put(real_ref(param, value));
       return put(static_cast<float>(std::get<double>(value)));
     case Kind::integer:
       return put(static_cast<int32_t>(std::get<double>(value)));
@@ -67,6 +85,16 @@ inline void write_member(const Param& param, const Value& value, uint8_t* target
     default:
       throw std::logic_error(std::string("parameter '") + param.name + "' has a member but no kind that fills it");
   }
+}
+
+// The description of the parameter of this name; throws if there is none.
+template <class T>
+Param param_named(std::string_view name) {
+  constexpr auto params = T::params();
+  for (uint32_t i = 0; i < params.size; ++i) {
+    if (name == params.items[i].name) return params.items[i];
+  }
+  throw std::logic_error("no parameter is called '" + std::string(name) + "'");
 }
 
 // A struct of type T with every member that its table names filled in; the others are zero.

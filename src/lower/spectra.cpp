@@ -146,6 +146,18 @@ SpectrumRef SpectrumPool::cauchy(double a, double b, double scale) {
   return add_function([&](double nm) { return a + b / (nm * nm * 1e-6); }, scale);
 }
 
+SpectrumRef SpectrumPool::textured_reflectance(uint32_t texture, double scale) {
+  if (rgb_nodes_.empty()) throw std::logic_error("the RGB table was not set");
+  any_textured_ = true;
+  return add({SpectrumForm::textured, static_cast<float>(scale), 0, 0, 0, texture, 0, 0});
+}
+
+uint32_t SpectrumPool::add_table(const std::vector<float>& values) {
+  const auto first = static_cast<uint32_t>(tables_.size());
+  tables_.insert(tables_.end(), values.begin(), values.end());
+  return first;
+}
+
 double SpectrumPool::value(SpectrumRef ref, double lambda) const {
   const Wavelengths wl = Wavelengths::at(lanes(static_cast<float>(lambda)), lanes(1.0f));
   return static_cast<double>(evaluate(records_[ref.index], tables_.data(), wl)[0]);

@@ -36,11 +36,21 @@ class SpectrumPool {
   // n = a + b / L^2.
   SpectrumRef cauchy(double a, double b, double scale);
 
+  // A reflectance that a texture gives, times `scale`; it makes the RGB table part of the scene.
+  SpectrumRef textured_reflectance(uint32_t texture, double scale);
+
+  // Position of further values in the tables.
+  uint32_t add_table(const std::vector<float>& values);
+
   double value(SpectrumRef ref, double lambda) const;
   bool is_zero(SpectrumRef ref) const;
 
   const std::vector<SpectrumRecord>& records() const { return records_; }
   const std::vector<float>& tables() const { return tables_; }
+  bool is_textured(SpectrumRef ref) const { return records_[ref.index].form == SpectrumForm::textured; }
+  bool any_textured() const { return any_textured_; }
+  const std::vector<float>& rgb_nodes() const { return rgb_nodes_; }
+  const std::vector<float>& rgb_table() const { return rgb_coefficients_; }
   const ColourData& colour() const { return colour_; }
 
  private:
@@ -56,6 +66,7 @@ class SpectrumPool {
   std::vector<float> tables_;
   std::vector<float> rgb_nodes_, rgb_coefficients_;
   std::optional<uint32_t> d65_table_;
+  bool any_textured_ = false;
 };
 
 }  // namespace accuray

@@ -16,7 +16,14 @@ from accuray.scene.reference import reference_markdown
 from accuray.scene.schema import Param, Type
 
 NOT_NUMBERS = [math.nan, math.inf, -math.inf, 1e400, 10**400, "nan", "1e999 m", None, True, [], {}, [[1]], "x" * 10_000]
-SECTION_OF = {"filter": "filter", "camera": "camera", "integrator": "integrator", "light": "lights", "shape": "shapes"}
+SECTION_OF = {
+    "filter": "filter", "camera": "camera", "integrator": "integrator", "texture": "textures", "light": "lights",
+    "shape": "shapes",
+}  # fmt: skip
+
+
+NEEDED: dict[str, dict[str, Any]] = {"conductor": {"metal": "Au"}, "image": {"pixels": [[0.5]]}}
+"""What a type cannot do without, besides the parameter in question."""
 
 
 def with_velvet(tables: dict[str, Any]) -> dict[str, Any]:
@@ -88,7 +95,8 @@ def scene_with(section: str, type_: Type, param: Param, value: Any) -> dict[str,
     """A scene whose only fault can be the value of that parameter."""
     if section in ("film", "render"):
         return {section: {param.name: value}}
-    needed = {p.name: 1000.0 for p in type_.params if p.required and p.kind == "float"}
+    needed = {} if param.group else NEEDED.get(type_.name, {})
+    needed |= {p.name: 1000.0 for p in type_.params if p.required and p.kind == "float"}
     table = {"type": type_.name, **needed, param.name: value}
     if section == "filter":
         return {"film": {"filter": table}}
@@ -139,7 +147,7 @@ def test_defaults_of_every_type_are_valid() -> None:
             dummy = Param(type_.params[0].name, "int") if type_.params else None
             scene = scene_with(section, type_, dummy or Param("x", "int"), None)
             table = scene["film"]["filter"] if section == "filter" else scene[section]
-            table = table["x"] if section in ("materials", "lights", "shapes") else table
+            table = table["x"] if section in ("textures", "materials", "lights", "shapes") else table
             table.pop(dummy.name if dummy else "x")
             Scene.from_dict(scene)
 
@@ -150,14 +158,14 @@ def test_tables_say_all_that_validation_needs() -> None:
             assert param.doc, f"{type_.name}.{param.name} has no sentence"
             assert param.kind != "spectrum" or param.role in ("reflectance", "emission", "index")
             assert param.kind != "enum" or param.choices
-            assert param.kind != "array" or param.role in ("Nx2", "Nx3", "faces")
+            assert param.kind != "array" or param.role in ("Nx2", "Nx3", "faces", "pixels")
 
 
 def test_json_schema_is_plain_and_complete() -> None:
     node = json.loads(json.dumps(json_schema()))
     assert set(node["properties"]) == {
-        "accuray", "length_unit", "include", "render", "film", "camera", "integrator", "spectra", "materials", "lights",
-        "shapes",
+        "accuray", "length_unit", "include", "render", "film", "camera", "integrator", "spectra", "textures",
+        "materials", "lights", "shapes",
     }  # fmt: skip
     for section, type_ in all_types():
         if section in ("film", "render"):

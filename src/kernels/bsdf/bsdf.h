@@ -16,6 +16,7 @@
 
 #include "kernels/geometry/texture_point.h"
 #include "kernels/schema.h"
+#include "kernels/texture/list.h"
 
 namespace accuray {
 
@@ -26,7 +27,12 @@ struct ShadingPoint {
   TexturePoint where;  // set for materials whose record says that they read it
   Spectrum exterior;   // index of refraction on the front side of a dielectric body
 
-  Spectrum spectrum(SpectrumRef ref) const { return scene.spectrum(ref, wl); }
+  Spectrum spectrum(SpectrumRef ref) const {
+    const SpectrumRecord& s = scene.spectra[ref.index];
+    if (s.form == SpectrumForm::textured) return textured_reflectance(scene, s, where, wl);
+    return evaluate(s, scene.tables, wl);
+  }
+  float real(const RealRef& ref) const { return ref.texture == none ? ref.value : textured_real(scene, ref, where); }
 };
 
 enum Lobe : uint32_t {

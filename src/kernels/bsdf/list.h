@@ -24,7 +24,28 @@ struct MaterialCommon {
                             .kind = Kind::choice,
                             .doc = "Sides that emit.",
                             .preset = "\"front\"",
-                            .choices = "front|both"});
+                            .choices = "front|both"},
+                      Param{.name = "opacity",
+                            .kind = Kind::real,
+                            .doc = "Share of the light that meets the surface; the rest passes straight on as if there "
+                                   "were nothing. Not for surfaces that emit.",
+                            .preset = "1",
+                            .low = 0,
+                            .high = 1,
+                            .unit = "1",
+                            .texturable = true,
+                            .animatable = true},
+                      Param{.name = "normal_map",
+                            .kind = Kind::reference,
+                            .doc = "Texture whose colours 0 to 1 are the components -1 to 1 of the normal in tangent "
+                                   "space; its scale multiplies the slopes.",
+                            .role = "texture",
+                            .texturable = true},
+                      Param{.name = "normal_map_convention",
+                            .kind = Kind::choice,
+                            .doc = "What green means: opengl up in the picture, directx down.",
+                            .preset = "\"opengl\"",
+                            .choices = "opengl|directx"});
   }
 };
 

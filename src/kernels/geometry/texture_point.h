@@ -8,10 +8,12 @@ namespace accuray {
 // Conventions
 //   - `uv` are a mesh's own texture coordinates where it has some, else the hit's barycentric ones; on a sphere u runs
 //     once around its y axis and v from the south pole to the north; on a disk both run over its bounding square.
+//   - `point` is in the shape's own space: that of the prototype for an instance, else the world.
 //   - `dpdu` and `dpdv` are derivatives of the point by them, in world space; never zero, and never parallel.
 struct TexturePoint {
   Vec2 uv;
   Vec3 dpdu, dpdv;
+  Vec3 point = {0.0f, 0.0f, 0.0f};
 };
 
 // Two tangents of no particular direction, for where the coordinates give none.
@@ -71,7 +73,7 @@ inline TexturePoint point_on_disk(const Disk& disk, Vec3 point) {
 inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const Surface& surface) {
   const Tagged shape = scene.geometries[hit.geometry].shape;
   const bool instanced = hit.instance != none;
-  const auto local = [&](Vec3 p) { return instanced ? scene.instances[hit.instance].to_object.point(p) : p; };
+  const Vec3 point = instanced ? scene.instances[hit.instance].to_object.point(surface.point) : surface.point;
   TexturePoint p;
   if (shape.tag == tag_of<Mesh>(Shapes{})) {
     Vec3 normal = surface.normal;
@@ -79,10 +81,11 @@ inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const 
     p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal);
   } else if (shape.tag == tag_of<Sphere>(Shapes{})) {
     const Sphere& sphere = scene.as<Sphere>(shape);
-    p = point_on_sphere(normalize(local(surface.point) - sphere.center), sphere.radius);
+    p = point_on_sphere(normalize(point - sphere.center), sphere.radius);
   } else {
-    p = point_on_disk(scene.as<Disk>(shape), local(surface.point));
+    p = point_on_disk(scene.as<Disk>(shape), point);
   }
+  p.point = point;
   if (instanced) {
     const Transform& to_world = scene.instances[hit.instance].to_world;
     p.dpdu = to_world.vector(p.dpdu);

@@ -88,7 +88,7 @@ struct PathTracing {
     const float u_roulette = u_decision[2];
 
     const ShadingPoint point = shading_point(scene, material, path, surface, exterior);
-    const Frame frame = shading_frame(material, surface, point);
+    const Frame frame = shading_frame(scene, material, surface, point, toward_viewer);
     const Vec3 wo = frame.to_local(toward_viewer);
     path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
       using Bsdf = typename decltype(type)::type;
@@ -107,7 +107,7 @@ struct PathTracing {
   template <Accel A>
   void trace(const SceneView& scene, const A& accel, Path& path) const {
     while (path.alive) {
-      intersect(accel, path);
+      intersect(scene, accel, path);
       if (path.hit.geometry == none) {
         shade_miss(scene, strategy, path);
       } else {

@@ -27,7 +27,7 @@ struct Reference {
   template <Accel A>
   void trace(const SceneView& scene, const A& accel, Path& path) const {
     while (path.alive) {
-      path.hit = accel.closest(path.ray);
+      intersect(scene, accel, path);
       path.bsdf_pdf = 0.0f;  // no other technique could have found what this ray meets
       if (path.hit.geometry == none) {
         shade_miss(scene, Strategy::bsdf, path);
@@ -44,7 +44,7 @@ struct Reference {
       const f32x4 u = path.sampler.draw(direction_set(path));
       const f32x4 u_decision = path.sampler.draw(decision_set(path));
       const ShadingPoint point = shading_point(scene, material, path, surface, exterior);
-      const Frame frame = shading_frame(material, surface, point);
+      const Frame frame = shading_frame(scene, material, surface, point, toward_viewer);
       const Vec3 wo = frame.to_local(toward_viewer);
       path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
         using Bsdf = typename decltype(type)::type;
@@ -66,7 +66,7 @@ struct Reference {
       const LightSample light = accuray::sample_light(scene, i, surface.point, Vec2{0.0f, 0.0f});
       const Vec3 wi = frame.to_local(light.wi);
       if ((dot(surface.normal, light.wi) > 0.0f) != (wi.z > 0.0f)) continue;
-      const float share = visible_share(accel, surface, light, path.ray.time);
+      const float share = visible_share(scene, accel, path, surface, light);
       const Spectrum arriving = scene.spectrum(record.emission, path.wl) * (light.scale * share) *
                                 share_towards(scene, material, surface, light, path);
       path.radiance += path.throughput * bsdf.eval(wo, wi) * arriving;

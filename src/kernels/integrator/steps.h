@@ -5,6 +5,8 @@
 #include "kernels/bsdf/list.h"
 #include "kernels/integrator/bodies.h"
 #include "kernels/light/select.h"
+#include "kernels/texture/normal_map.h"
+#include "kernels/texture/opacity.h"
 
 namespace accuray {
 
@@ -25,14 +27,25 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
   if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before};
   return {scene, path.wl, texture_point(scene, path.hit, surface), before};
 }
-inline Frame shading_frame(const MaterialRecord& material, const Surface& surface, const ShadingPoint& p) {
-  return material.reads_texture_point == 0 ? Frame::around(surface.shading)
-                                           : Frame::along(surface.shading, p.where.dpdu);
+inline Frame shading_frame(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
+                           const ShadingPoint& p, Vec3 toward_viewer) {
+  const Vec3 given =
+      material.normal_map == none ? surface.shading : mapped_normal(scene, material, surface.shading, p.where);
+  const Vec3 normal = facing_normal(surface.normal, given, toward_viewer);
+  return material.oriented == 0 ? Frame::around(normal) : Frame::along(normal, p.where.dpdu);
+}
+
+// What decides about partly opaque surfaces at this vertex: one stream for the path, one for light that it asks for.
+enum class OpacityStream : uint32_t { path = 0x6f706163u, light = 0x6f706c74u };
+inline uint32_t opacity_key(const Path& path, OpacityStream stream) {
+  return hash(path.sampler.key, path.sampler.index, path.depth, static_cast<uint32_t>(stream));
 }
 
 template <Accel A>
-inline void intersect(const A& accel, Path& path) {
-  path.hit = accel.closest(path.ray);
+inline void intersect(const SceneView& scene, const A& accel, Path& path) {
+  path.hit = scene.root->any_opacity == 0
+                 ? accel.closest(path.ray)
+                 : closest_opaque(scene, accel, path.ray, opacity_key(path, OpacityStream::path));
 }
 
 inline Spectrum environment_radiance(const SceneView& scene, const Wavelengths& wl) {
@@ -74,11 +87,15 @@ inline void shade_miss(const SceneView& scene, Strategy strategy, Path& path) {
 
 // Part of a light sample that arrives: everything but the light's own emission.
 template <Accel A>
-inline float visible_share(const A& accel, const Surface& surface, const LightSample& light, float time) {
+inline float visible_share(const SceneView& scene, const A& accel, const Path& path, const Surface& surface,
+                           const LightSample& light) {
   const Vec3 from = offset_origin(surface.point, surface.error, surface.normal, light.wi);
-  if (light.distance == infinity) return accel.transmittance({from, light.wi, infinity, time});
-  const Vec3 to = offset_origin(light.point, light.error, light.normal, -light.wi);
-  return accel.transmittance({from, to - from, one_minus_epsilon, time});
+  const bool endless = light.distance == infinity;
+  const Vec3 to = endless ? from : offset_origin(light.point, light.error, light.normal, -light.wi);
+  const Ray ray =
+      endless ? Ray{from, light.wi, infinity, path.ray.time} : Ray{from, to - from, one_minus_epsilon, path.ray.time};
+  if (scene.root->any_opacity == 0) return accel.transmittance(ray);
+  return opaque_transmittance(scene, accel, ray, to, opacity_key(path, OpacityStream::light));
 }
 
 // Share of a light sample that the body around it lets through, on whichever side of the surface it comes from.
@@ -111,7 +128,7 @@ inline void sample_light(const SceneView& scene, const A& accel, Strategy strate
   if (is_black(f)) return;
   const float pdf = light.pdf * choice.probability;
   const float weight = delta || strategy == Strategy::light ? 1.0f : mis_weight(pdf, bsdf.pdf(wo, wi));
-  const float share = visible_share(accel, surface, light, path.ray.time);
+  const float share = visible_share(scene, accel, path, surface, light);
   if (share == 0.0f) return;
   Spectrum arriving = scene.spectrum(record.emission, path.wl) * (light.scale * weight * share / pdf);
   if (path.inside.count != 0) arriving *= share_towards(scene, material, surface, light, path);

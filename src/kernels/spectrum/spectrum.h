@@ -6,11 +6,12 @@
 namespace accuray {
 
 enum class SpectrumForm : uint32_t {
-  constant,    // scale
-  table,       // scale * table at 1 nm
-  fine,        // scale * table with a step of its own
-  sigmoid,     // scale * S(c0 t^2 + c1 t + c2), t = (lambda - 360) / 470 (Jakob and Hanika 2019)
-  lit_sigmoid  // the same times a table at 1 nm: an RGB light under a white
+  constant,     // scale
+  table,        // scale * table at 1 nm
+  fine,         // scale * table with a step of its own
+  sigmoid,      // scale * S(c0 t^2 + c1 t + c2), t = (lambda - 360) / 470 (Jakob and Hanika 2019)
+  lit_sigmoid,  // the same times a table at 1 nm: an RGB light under a white
+  textured      // scale * the texture number `table`: differs from point to point, see texture/list.h
 };
 
 struct SpectrumRecord {
@@ -62,6 +63,7 @@ inline Spectrum evaluate(const SpectrumRecord& s, const float* tables, const Wav
       return sigmoid_of(s, wl) * s.scale;
     case SpectrumForm::lit_sigmoid:
       return sigmoid_of(s, wl) * lookup(tables + s.table, wl) * s.scale;
+    case SpectrumForm::textured:
     case SpectrumForm::constant:
       break;
   }

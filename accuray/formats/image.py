@@ -1,0 +1,58 @@
+"""Image files for textures, through OpenImageIO, which is imported when the first one is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from accuray.scene.images import MAX_BYTES, check_size
+from accuray.scene.paths import display_path
+
+_STORED = {"uint8": "uint8", "uint16": "uint16", "half": "half"}
+"""Types that are kept as they are; all others are read as single precision floats."""
+
+
+def read(path: Path) -> NDArray[Any]:
+    """(height, width, channels) of uint8, uint16, float16 or float32, from the top, as ``ImageReader`` says.
+
+    The first picture of the file is read, and at most four of its channels; colours stay as they are stored, not
+    multiplied by alpha. Raises ValueError.
+    """
+    import OpenImageIO as oiio  # noqa: N813
+
+    oiio.attribute("limits:imagesize_MB", MAX_BYTES >> 20)
+    config = oiio.ImageSpec()
+    config.attribute("oiio:UnassociatedAlpha", 1)
+    source = oiio.ImageInput.open(str(path), config)
+    if source is None:
+        raise ValueError(_message(oiio.geterror(), path))
+    try:
+        return _read(source, path)
+    finally:
+        source.close()
+        oiio.geterror()
+
+
+def _read(source: Any, path: Path) -> NDArray[Any]:
+    spec = source.spec()
+    if spec.depth > 1:
+        raise ValueError(f"it is a volume of {spec.depth} slices; allowed are flat pictures")
+    if spec.deep:
+        raise ValueError("it is a deep image; allowed are flat pictures")
+    kind = _STORED.get(str(spec.format), "float")
+    channels = min(spec.nchannels, 4)
+    check_size(spec.width, spec.height, channels * np.dtype(kind.replace("half", "float16")).itemsize)
+    pixels = source.read_image(0, 0, 0, channels, kind)
+    error = source.geterror()
+    if pixels is None or error:
+        raise ValueError(_message(error, path))
+    return np.ascontiguousarray(np.reshape(pixels, (spec.height, spec.width, channels)))
+
+
+def _message(error: str, path: Path) -> str:
+    """What the library says, in one line and without the path of this machine."""
+    text = " ".join(error.replace(str(path), display_path(path)).split())
+    return text or "it is broken, or of no kind that OpenImageIO reads"

@@ -1,0 +1,118 @@
+"""Textures: how a parameter refers to one, and what all uses of a texture must fulfil together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from accuray.scene.errors import Where
+from accuray.scene.plain import choice, quantity
+from accuray.scene.schema import Param, Schema
+from accuray.scene.scope import Scope
+
+CHANNELS = ("red", "green", "blue", "alpha")
+NORMAL = "normal"
+"""Channel of a normal map, which reads three as numbers."""
+
+Objects = dict[str, dict[str, Any]]
+_SCALE = Param("scale", "float", default=1.0, min=0.0)
+_CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
+
+
+@dataclass(frozen=True)
+class TextureUse:
+    """A parameter's value that a texture gives: its colour, or for a number one of its channels, times ``scale``.
+
+    ``channel`` is "" for a colour, "normal" for a normal map.
+    """
+
+    texture: str
+    scale: float = 1.0
+    channel: str = ""
+
+
+def names_texture(value: Any) -> bool:
+    """Does a value of a scene refer to a texture?"""
+    return isinstance(value, TextureUse) or (isinstance(value, dict) and "texture" in value)
+
+
+def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUse:
+    """The reference ``{ texture = "NAME", scale = 1, channel = "red" }``. Raises SceneError."""
+    if not param.texturable:
+        raise where.error(f"takes no texture, only a {param.kind}", value=value)
+    if isinstance(value, TextureUse):
+        value = {key: item for key, item in vars(value).items() if item not in ("", NORMAL)}
+    elif not isinstance(value, dict):
+        value = {"texture": value}
+    keys = ("texture", "scale", "channel") if param.kind == "float" else ("texture", "scale")
+    for key in value:
+        if key not in keys:
+            raise where.child(key).unknown(key, "key of a textured parameter", keys)
+    name, known = value["texture"], scope.names("textures")
+    if not isinstance(name, str) or name not in known:
+        raise where.child("texture").unknown(name, "texture", known)
+    scale = quantity(_SCALE, value.get("scale", _SCALE.default), where.child("scale"))
+    if param.kind != "float":
+        return TextureUse(name, scale, NORMAL if param.kind == "reference" else "")
+    return TextureUse(name, scale, choice(_CHANNEL, value.get("channel", _CHANNEL.default), where.child("channel")))
+
+
+def uses_of(table: dict[str, Any]) -> Iterator[tuple[str, TextureUse]]:
+    """Parameters of an object that a texture gives."""
+    return ((key, value) for key, value in table.items() if isinstance(value, TextureUse))
+
+
+def settle_colour_spaces(textures: Objects, materials: Objects, where: Where) -> None:
+    """Puts what ``color_space = "auto"`` means in its place: it follows from the stored texels and from the uses.
+
+    Integers are sRGB where they give spectra and data where they give numbers; floats are linear. Raises SceneError
+    if a texture gives both.
+    """
+    for name, texture in textures.items():
+        if texture.get("color_space") != "auto":
+            continue
+        if texture["pixels"].dtype.kind == "f":
+            texture["color_space"] = "linear"
+            continue
+        found = [(m, key, use) for m, table in materials.items() for key, use in uses_of(table) if use.texture == name]
+        numbers = [(m, key) for m, key, use in found if use.channel]
+        colours = [(m, key) for m, key, use in found if not use.channel]
+        if numbers and colours:
+            raise where.child(name, "color_space").error(
+                f"is auto, but materials.{'.'.join(colours[0])} takes colours from the texture and "
+                f"materials.{'.'.join(numbers[0])} numbers",
+                allowed='"srgb", "linear" or "data"; or two textures, which share one file',
+            )
+        texture["color_space"] = "data" if numbers else "srgb"
+
+
+def check_opacity(materials: Objects, where: Where) -> None:
+    """A surface that lets light through cannot emit: its lights are sampled whole. Raises SceneError."""
+    for name, material in materials.items():
+        if material["emission"] is not None and material["opacity"] != 1.0:
+            raise where.child("materials", name, "opacity").error(
+                "cannot go with `emission`", allowed="opacity = 1 for a surface that emits"
+            )
+
+
+def check_coordinates(textures: Objects, materials: Objects, shapes: Objects, schema: Schema, where: Where) -> None:
+    """A texture that is laid out by texture coordinates needs shapes that have them. Raises SceneError."""
+    types = schema.family("texture").types
+    laid_out = {
+        name: (key, use.texture)
+        for name, table in materials.items()
+        for key, use in uses_of(table)
+        if types[textures[use.texture]["type"]].reads_uv
+    }
+    for name, shape in shapes.items():
+        for member in shape.get("of") or (name,):
+            material = shape["material"] or shapes[member]["material"]
+            if material in laid_out and shapes[member]["type"] == "mesh" and shapes[member]["uvs"] is None:
+                key, texture = laid_out[material]
+                via = f' (shown by "{name}")' if member != name else ""
+                user = f"materials.{material}.{key}"
+                raise where.child("shapes", member).error(
+                    f'has no texture coordinates{via}, which the texture "{texture}" of {user} needs',
+                    allowed="a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)",
+                )

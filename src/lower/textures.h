@@ -1,0 +1,53 @@
+// Textures of the lowered scene: pictures in sections of their own, and the records that kernels look up.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "kernels/texture/list.h"
+#include "lower/block.h"
+#include "lower/parameters.h"
+#include "lower/spectra.h"
+
+namespace accuray {
+
+// A picture's texels as somebody else keeps them: rows from the top, channels next to each other.
+struct Picture {
+  Section texels;
+  uint32_t width, height, channels;
+  TexelFormat format;
+};
+
+// How a texture's picture is read.
+struct PictureUse {
+  uint32_t picture;
+  bool srgb;  // colours are stored with the sRGB curve
+};
+
+class TexturePool {
+ public:
+  TexturePool(ParameterPool& pool, SpectrumPool& spectra, std::vector<Section>& bulk)
+      : pool_(pool), spectra_(spectra), bulk_(bulk) {}
+
+  // The picture's number; textures that show the same one share it.
+  uint32_t add_picture(Picture picture);
+  // The texture's number. Textures that show a picture need one.
+  uint32_t add(std::string_view type, const Values& values, std::optional<PictureUse> use);
+
+  const std::vector<Tagged>& records() const { return records_; }
+
+ private:
+  void show(ImageTexture& texture, const PictureUse& use);
+  uint32_t srgb_table(uint32_t most);
+
+  ParameterPool& pool_;
+  SpectrumPool& spectra_;
+  std::vector<Section>& bulk_;
+  std::vector<Tagged> records_;
+  std::vector<std::pair<Picture, uint32_t>> pictures_;  // with the section of each
+  std::map<uint32_t, uint32_t> srgb_tables_;            // by the largest integer
+};
+
+}  // namespace accuray
