@@ -57,6 +57,14 @@ def glowing(scene: accuray.Scene, material: str, radiance: float) -> accuray.Sce
     return replace(scene, materials=scene.materials | {material: table})
 
 
+def dimmed(scene: accuray.Scene, names: tuple[str, ...], factor: float) -> accuray.Scene:
+    """The materials called so emit `factor` of their light."""
+    changed = {name: dict(scene.materials[name]) for name in names}
+    for material in changed.values():
+        material["emission"] = replace(material["emission"], scale=material["emission"].scale * factor)
+    return replace(scene, materials=scene.materials | changed)
+
+
 def corners(table: Table) -> NDArray[np.float64]:
     """Vertices of a mesh or rectangle, (N, 3); a rectangle's first is its `corner`."""
     if table["type"] == "mesh":
@@ -87,6 +95,9 @@ UNKNOWN = Fair("as it is")
 FAIR = {
     "closed-box": Fair("as it is: it glows everywhere"),
     "cornell-box": Fair("the lamp 4 times as wide and long, 1/16 as bright", partial(enlarged, lamp="lamp", factor=4)),
+    "depth-of-field": Fair(
+        "the lamps in the background a tenth as bright", partial(dimmed, names=("warm", "cool"), factor=0.1)
+    ),
     "furnace": Fair("as it is: its light comes from everywhere"),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "sphere-cavity": Fair("as it is: `reference` sums its point light plainly"),

@@ -199,10 +199,11 @@ def opencv_pixels(points: FloatArray, k: dict[str, float], c: dict[str, float]) 
     return np.stack([k["fx"] * xx + k["cx"], k["fy"] * yy + k["cy"]], axis=1)
 
 
+@pytest.mark.parametrize("reach", [0.6, 1.2])
 @pytest.mark.parametrize("name", CALIBRATIONS)
-def test_a_point_is_seen_at_the_pixel_where_opencv_projects_it(name: str) -> None:
-    rng = np.random.default_rng(SEED)
-    points = np.stack([rng.uniform(-0.75, 0.75, 2000), rng.uniform(-0.5, 0.5, 2000), np.ones(2000)], axis=1)
+def test_a_point_is_seen_at_the_pixel_where_opencv_projects_it(name: str, reach: float) -> None:
+    """Within the picture, and far beyond it, up to 60 degrees off the axis."""
+    points = np.concatenate([reach * (2.0 * uniform(2000, 2, SEED) - 1.0), np.ones((2000, 1))], axis=1)
     pixels = opencv_pixels(points, K, CALIBRATIONS[name])
     film = (pixels + 0.5) / [WIDTH, HEIGHT]  # the middle of pixel 0 is at u = 0
     rays = Rays({"type": "pinhole_intrinsics", **K, **CALIBRATIONS[name]}, film)

@@ -38,8 +38,10 @@ struct PinholeIntrinsics {
 
   CameraRay ray(Vec2 film, Vec2 /*lens*/, float time) const {
     Vec2 p{};
-    const bool seen = distortion.undistort({fma(film.x, scale.x, offset.x), fma(film.y, scale.y, offset.y)}, p);
-    return {{pose.position, normalize(pose.to_world(p.x, -p.y, -1.0f)), infinity, time}, seen};
+    if (!distortion.undistort({fma(film.x, scale.x, offset.x), fma(film.y, scale.y, offset.y)}, p)) {
+      return {{pose.position, -pose.backward, infinity, time}, false};
+    }
+    return {{pose.position, normalize(pose.to_world(p.x, -p.y, -1.0f)), infinity, time}};
   }
 
  private:
