@@ -103,6 +103,8 @@ def in_words(c: accuray.Comparison) -> list[tuple[str, str]]:
     else:
         verdict = "explains the difference" if c.noise else "does not explain the difference"
         facts.append(("noise", f"{verdict}: {c.noise.reason}"))
+        if c.note:
+            facts.append(("", c.note))
     return facts
 
 

@@ -48,7 +48,7 @@ class Comparison:
         identical: whether all linear values are equal.
         noise: whether noise explains the difference of the linear images: a z-test over blocks of 8 x 8 pixels in R, G
             and B, and over their totals; None where it cannot be made.
-        note: why `noise` is None, else empty.
+        note: why `noise` is None, or what to know about it; else empty.
         difference_map: float32 (height, width), the absolute difference of display values, mean of R, G and B.
         flip_map: float32 (height, width), FLIP, 0 to 1 (Andersson et al. 2020).
     """
@@ -205,14 +205,17 @@ def _check_same_view(a: Picture, b: Picture) -> None:
 
 
 def _noise(a: Picture, b: Picture, scales: list[float]) -> tuple[ZResult | None, str]:
-    """The z-test by the errors of both pictures, or why there is none."""
+    """The z-test by the errors of both pictures, or None; and what to know about it, or why there is none."""
     if a.error is None or b.error is None:
         return None, "not both have error estimates"
     if not (np.isfinite(a.error).all() and np.isfinite(b.error).all()):
         return None, "some pixels have too few samples for an error estimate"
     columns = (a.rgb * scales[0], a.error * scales[0], b.rgb * scales[1], b.error * scales[1])
     dof = min(a.replicates, b.replicates) - 1
-    return blocks(*columns, size=BLOCK, alpha=SIGNIFICANCE, power=_ANY_POWER, dof=dof), ""
+    note = (
+        "both hold samples of one seed and number: they share noise, so less is noticed" if a.shares_samples(b) else ""
+    )
+    return blocks(*columns, size=BLOCK, alpha=SIGNIFICANCE, power=_ANY_POWER, dof=dof), note
 
 
 def _finite(value: float) -> float | None:

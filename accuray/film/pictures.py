@@ -34,6 +34,8 @@ class Picture:
         exposure: what its maker exposes it by for display, in EV; None: unknown.
         error: standard error of rgb, of the same shape, or None.
         replicates: how many the error was estimated from.
+        seed: of its samples; None: unknown.
+        samples: ranges (first, end) of the numbers of its samples.
         window: which pixels (x0, y0, x1, y1) of a larger picture it shows; None: it is whole, or nobody knows.
     """
 
@@ -43,7 +45,15 @@ class Picture:
     exposure: float | None = None
     error: NDArray[np.float64] | None = None
     replicates: int = 0
+    seed: object = None
+    samples: tuple[tuple[int, int], ...] = ()
     window: tuple[int, int, int, int] | None = None
+
+    def shares_samples(self, other: Picture) -> bool:
+        """Whether samples of one seed and number are in both, so that their noise is not independent."""
+        if self.seed is None or self.seed != other.seed:
+            return False
+        return any(max(a, c) < min(b, d) for a, b in self.samples for c, d in other.samples)
 
 
 def picture_of(source: Source, name: str) -> Picture:
@@ -91,6 +101,8 @@ def _from_image(image: Image, name: str) -> Picture:
         exposure=float(image.metadata.get("exposure") or 0.0),
         error=image.error.astype(np.float64),
         replicates=image.film.replicates,
+        seed=image.metadata.get("seed"),
+        samples=tuple((r.first, r.end) for r in image.film.coverage),
         window=image.film.window,
     )
 
