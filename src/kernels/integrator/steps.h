@@ -5,6 +5,7 @@
 #include "kernels/bsdf/list.h"
 #include "kernels/integrator/path_state.h"
 #include "kernels/light/select.h"
+#include "kernels/texture/bump.h"
 #include "kernels/texture/normal_map.h"
 #include "kernels/texture/opacity.h"
 
@@ -26,10 +27,12 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
   return {scene, path.wl, texture_point(scene, path.hit, surface)};
 }
 inline Frame shading_frame(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
-                           const ShadingPoint& p, Vec3 toward_viewer) {
-  const Vec3 given = material.normal_map == none ? surface.shading
-                                                 : mapped_normal(scene, material, surface.shading, p.where);
-  const Vec3 normal = facing_normal(surface.normal, given, toward_viewer);
+                           const ShadingPoint& p, const Path& path) {
+  Vec3 normal = surface.shading;
+  if (material.normal_map != none) normal = mapped_normal(scene, material, normal, p.where);
+  if (material.bump_map != none)
+    normal = bumped_normal(scene, material.bump_map, material.bump_height, path.hit, normal, p.where);
+  normal = facing_normal(surface.normal, normal, -path.ray.direction);
   return material.oriented == 0 ? Frame::around(normal) : Frame::along(normal, p.where.dpdu);
 }
 
@@ -90,8 +93,8 @@ inline float visible_share(const SceneView& scene, const A& accel, const Path& p
   const Vec3 from = offset_origin(surface.point, surface.error, surface.normal, light.wi);
   const bool endless = light.distance == infinity;
   const Vec3 to = endless ? from : offset_origin(light.point, light.error, light.normal, -light.wi);
-  const Ray ray = endless ? Ray{from, light.wi, infinity, path.ray.time}
-                          : Ray{from, to - from, one_minus_epsilon, path.ray.time};
+  const Ray ray =
+      endless ? Ray{from, light.wi, infinity, path.ray.time} : Ray{from, to - from, one_minus_epsilon, path.ray.time};
   if (scene.root->any_opacity == 0) return accel.transmittance(ray);
   return opaque_transmittance(scene, accel, ray, to, opacity_key(path, OpacityStream::light));
 }

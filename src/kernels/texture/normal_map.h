@@ -40,8 +40,9 @@ ACCURAY_NOINLINE inline Vec3 mapped_normal(const SceneView& scene, const Materia
 
 // The shading normal nearest to the given one for which the viewer's mirror direction does not lie below the true
 // surface; without it, normals that lean away from the viewer make black patches. The mirror direction is moved up to
-// just above the horizon and the normal put half way between it and the viewer (after Keller et al. 2017, "The Iray Light
-// Transport Simulation and Rendering System", who move it to the horizon: rounding then loses half of the reflections).
+// just above the horizon and the normal put half way between it and the viewer (after Keller et al. 2017, "The Iray
+// Light Transport Simulation and Rendering System", who move it to the horizon: rounding then loses half of the
+// reflections).
 inline Vec3 facing_normal(Vec3 normal, Vec3 shading, Vec3 wo) {
   const float cos_o = dot(normal, wo);
   const float side = cos_o < 0.0f ? -1.0f : 1.0f;
