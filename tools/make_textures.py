@@ -36,13 +36,15 @@ def bricks() -> tuple[FloatArray, FloatArray]:
 
 
 def colours(height: FloatArray, brick: FloatArray) -> FloatArray:
-    """sRGB colours (SIZE, SIZE, 3): each brick has its own red, and some grain."""
+    """Colours (SIZE, SIZE, 3) in sRGB: each brick has its own red, and some grain."""
     rng = np.random.default_rng(4)
     tones = rng.uniform(-1.0, 1.0, ROWS * COLUMNS)[brick.astype(int)][..., np.newaxis]
     grain = rng.normal(0.0, 0.02, (SIZE, SIZE, 1))
     clay = np.array([0.66, 0.36, 0.28]) + tones * np.array([0.12, 0.07, 0.05])
     mortar = np.array([0.72, 0.70, 0.66])
-    return np.clip(mortar + (clay - mortar) * np.clip(height / 1.5, 0.0, 1.0)[..., np.newaxis] + grain, 0.0, 1.0)
+    share = np.clip(height / 1.5, 0.0, 1.0)[..., np.newaxis]
+    mixed: FloatArray = np.clip(mortar + (clay - mortar) * share + grain, 0.0, 1.0)
+    return mixed
 
 
 def normals(height: FloatArray) -> FloatArray:
@@ -50,11 +52,12 @@ def normals(height: FloatArray) -> FloatArray:
     along_u = 0.5 * (np.roll(height, -1, axis=1) - np.roll(height, 1, axis=1))
     along_v = 0.5 * (np.roll(height, 1, axis=0) - np.roll(height, -1, axis=0))
     n = np.stack([-along_u, -along_v, np.ones_like(height)], axis=-1)
-    return 0.5 + 0.5 * n / np.linalg.norm(n, axis=-1, keepdims=True)
+    coded: FloatArray = 0.5 + 0.5 * n / np.linalg.norm(n, axis=-1, keepdims=True)
+    return coded
 
 
 def leaf(size: int = 128) -> FloatArray:
-    """sRGB and alpha (size, size, 4) of a leaf whose stem is at the bottom."""
+    """A leaf (size, size, 4), sRGB and alpha, whose stem is at the bottom."""
     y, x = (np.mgrid[0:size, 0:size] + 0.5) / size
     along, across = 1.0 - y, np.abs(x - 0.5)
     width = 0.38 * np.sin(np.pi * np.clip((along - 0.12) / 0.85, 0.0, 1.0)) ** 0.7
@@ -66,6 +69,7 @@ def leaf(size: int = 128) -> FloatArray:
 
 
 def write(name: str, pixels: FloatArray) -> None:
+    """Stores numbers from 0 to 1 with 8 bits."""
     stored: NDArray[Any] = np.floor(pixels * 255.0 + 0.5).astype(np.uint8)
     spec = oiio.ImageSpec(stored.shape[1], stored.shape[0], stored.shape[2], "uint8")
     spec.attribute("oiio:UnassociatedAlpha", 1)
@@ -76,6 +80,7 @@ def write(name: str, pixels: FloatArray) -> None:
 
 
 def main() -> None:
+    """Writes all pictures."""
     FOLDER.mkdir(exist_ok=True)
     height, brick = bricks()
     write("bricks.png", colours(height, brick))

@@ -12,8 +12,8 @@ from accuray.scene.schema import Param, Schema
 from accuray.scene.scope import Scope
 
 CHANNELS = ("red", "green", "blue", "alpha")
-NORMAL = "normal"
-"""Channel of a normal map, which reads three as numbers."""
+MAP = "map"
+"""Channel of normal and bump maps, which are read as numbers."""
 
 Objects = dict[str, dict[str, Any]]
 _SCALE = Param("scale", "float", default=1.0, min=0.0)
@@ -24,7 +24,7 @@ _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
 class TextureUse:
     """A parameter's value that a texture gives: its colour, or for a number one of its channels, times ``scale``.
 
-    ``channel`` is "" for a colour, "normal" for a normal map.
+    ``channel`` is "" for a colour, "map" for a normal or bump map.
     """
 
     texture: str
@@ -42,7 +42,7 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
     if not param.texturable:
         raise where.error(f"takes no texture, only a {param.kind}", value=value)
     if isinstance(value, TextureUse):
-        value = {key: item for key, item in vars(value).items() if item not in ("", NORMAL)}
+        value = {key: item for key, item in vars(value).items() if item not in ("", MAP)}
     elif not isinstance(value, dict):
         value = {"texture": value}
     keys = ("texture", "scale", "channel") if param.kind == "float" else ("texture", "scale")
@@ -54,7 +54,7 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
         raise where.child("texture").unknown(name, "texture", known)
     scale = quantity(_SCALE, value.get("scale", _SCALE.default), where.child("scale"))
     if param.kind != "float":
-        return TextureUse(name, scale, NORMAL if param.kind == "reference" else "")
+        return TextureUse(name, scale, MAP if param.kind == "reference" else "")
     return TextureUse(name, scale, choice(_CHANNEL, value.get("channel", _CHANNEL.default), where.child("channel")))
 
 

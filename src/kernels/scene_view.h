@@ -55,6 +55,8 @@ struct MaterialRecord {
   uint32_t normal_map;           // texture; none: the shape's own normals
   uint32_t normal_map_down;      // its green points down (DirectX)
   float normal_strength;         // factor of its slopes
+  uint32_t bump_map;             // texture; none: smooth
+  float bump_height;             // of its value 1
 };
 
 struct GeometryRecord {

@@ -85,6 +85,12 @@ uint32_t SceneBuilder::add_material(std::string_view type, const Values& values,
     material.normal_strength = static_cast<float>(map.scale);
     material.normal_map_down = number_of(header, "normal_map_convention") != 0.0 ? 1u : 0u;
   }
+  material.bump_map = none;
+  if (header.contains("bump_map")) {
+    const auto& map = std::get<TexturedReal>(value_of(header, "bump_map"));
+    material.bump_map = map.texture;
+    material.bump_height = static_cast<float>(map.scale * number_of(header, "bump_height"));
+  }
   const auto any_textured = [&](const Values& some) {
     return std::any_of(some.begin(), some.end(), [&](const auto& named) { return is_textured(named.second); });
   };

@@ -20,6 +20,8 @@ FILE_NAME = re.compile(r"# (\S+\.(?:toml|csv))\b")
 def folder(tmp_path: Path) -> Path:
     """A folder with the files that the page's scenes name; the page writes most of them itself."""
     (tmp_path / "pyramid.obj").write_text(PYRAMID, encoding="utf-8")
+    for picture in (REPOSITORY / "scenes/textures").glob("*.png"):
+        (tmp_path / picture.name).write_bytes(picture.read_bytes())
     for block in (*blocks(PAGE, "csv"), *blocks(PAGE, "toml")):
         if name := FILE_NAME.match(block.text):
             (tmp_path / name[1]).write_text(block.text, encoding="utf-8")
@@ -38,7 +40,7 @@ def test_example_is_a_scene(block: Block, folder: Path) -> None:
 
 def test_examples_cover_every_section() -> None:
     text = "".join(block.text for block in blocks(PAGE, "toml"))
-    for section in ("film", "camera", "spectra", "materials", "lights", "shapes"):
+    for section in ("film", "camera", "spectra", "textures", "materials", "lights", "shapes"):
         assert re.search(rf"^\[{section}\b", text, re.MULTILINE), section
 
 

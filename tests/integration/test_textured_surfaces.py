@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -177,16 +178,20 @@ def mapped(normal: Any, bsdf: Table, texture: Table | None = None, **material: A
     return scene({**bsdf, "normal_map": "n", **material}, textures)
 
 
+def accuray_core(of: accuray.Scene) -> Any:
+    """The lowered scene, as the probe takes it."""
+    from accuray import devices
+
+    return devices.load(of).core
+
+
 LAMP = {"lamp": {"type": "point", "position": [60, 40, 60], "intensity": 1e4}}
 
 
-def lit(of: accuray.Scene, shape: Table | None = None) -> float:
+def lit(of: accuray.Scene) -> float:
     """Radiance of the plane under the lamp, straight from above."""
-    described = scene({}, materials={"m": {"type": "diffuse"}}, lights=LAMP)
-    from dataclasses import replace
-
-    lamp_only = replace(of, lights=described.lights)
-    return radiance(lamp_only, spp=16)[0]
+    lamps = scene({"type": "diffuse"}, lights=LAMP).lights
+    return radiance(replace(of, lights=lamps, integrator={**of.integrator, "max_depth": 1}), spp=16)[0]
 
 
 def expected_under_lamp(normal: Any) -> float:
@@ -222,6 +227,56 @@ def test_the_scale_of_a_normal_map_multiplies_slopes() -> None:
     of = mapped(normal, WHITE, normal_map={"texture": "n", "scale": 0.5})
     half = normal * [0.5, 0.5, 1.0]
     assert lit(of) == pytest.approx(expected_under_lamp(half / np.linalg.norm(half)), rel=2e-5)
+
+
+RAMP = {"type": "image", "pixels": np.arange(64.0).reshape(1, 64) / 64.0, "wrap_u": "clamp"}
+
+
+@pytest.mark.parametrize(
+    ("texture", "slope"),
+    [
+        ({"type": "gradient"}, [20 / 40, 0.0]),
+        ({"type": "gradient", "uv_rotate": 90, "uv_translate": [1, 0]}, [0.0, -20 / 40]),
+        ({"type": "gradient", "uv_scale": [1, 1.6], "uv_rotate": -90, "uv_translate": [-0.3, 0]}, [0.0, 1.6 * 20 / 40]),
+        ({**RAMP, "uv_translate": [0.003, 0]}, [20 / 40, 0.0]),
+    ],
+    ids=["gradient", "turned", "scaled", "image"],
+)
+def test_a_bump_map_leans_the_surface_by_its_slope(texture: Table, slope: list[float]) -> None:
+    """Heights rise by 20 m from one end of the texture to the other; the plane is 40 m wide."""
+    bump = {"texture": "t", "scale": 2}
+    of = scene({**WHITE, "bump_map": bump, "bump_height": 10}, {"t": texture})
+    normal = np.array([-slope[0], -slope[1], 1.0])
+    assert lit(of) == pytest.approx(expected_under_lamp(normal / np.linalg.norm(normal)), rel=1e-3)
+
+
+def test_bumps_keep_their_height_on_a_scaled_instance() -> None:
+    """Twice as wide, half the slope; mirrored through the origin and turned to its front, the same along x."""
+    for scale, slope in ((2.0, 0.25), (-1.0, 0.5)):
+        shapes = {
+            "plane": {**PLANE, "prototype": True},
+            "copy": {
+                "type": "instance", "of": "plane",
+                "transform": [{"scale": scale}, {"rotate": {"axis": [0, 1, 0], "angle": 180 if scale < 0 else 0}}],
+            },
+        }  # fmt: skip
+        of = scene({**WHITE, "bump_map": "t", "bump_height": 20}, {"t": {"type": "gradient"}}, shapes=shapes)
+        normal = np.array([-slope, 0.0, 1.0])
+        assert lit(of) == pytest.approx(expected_under_lamp(normal / np.linalg.norm(normal)), rel=1e-3), scale
+
+
+@pytest.mark.parametrize("name", ["noise", "wood", "marble"])
+def test_solid_textures_make_bumps(name: str) -> None:
+    """The radiance under a lamp follows from the slopes of the texture's own values."""
+    from accuray._core import probe
+
+    texture = {"type": name, "size": 0.7, "first": [0, 0, 0], "second": [1, 1, 1]}
+    of = scene({**WHITE, "bump_map": "t", "bump_height": 0.2}, {"t": texture})
+    core, at, d = accuray_core(of), np.array([0.3, 0.2, 0.0]), 0.7 / 256
+    points = (at + d * np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])).astype(np.float32)
+    h = 0.2 * probe.texture_values(core, 0, np.zeros((4, 2), dtype=np.float32), points)[:, 0].astype(float)
+    normal = np.array([-(h[0] - h[1]) / (2 * d), -(h[2] - h[3]) / (2 * d), 1.0])
+    assert lit(of) == pytest.approx(expected_under_lamp(normal / np.linalg.norm(normal)), rel=2e-3)
 
 
 @pytest.mark.parametrize("tilt", [0.0, 20.0, 45.0, 60.0])

@@ -49,7 +49,7 @@ def test_a_parameter_holds_what_it_takes_from_the_texture() -> None:
     ).materials["m"]
     assert made["reflectance"] == TextureUse("t", 0.5)
     assert made["opacity"] == TextureUse("t", 1.0, "alpha")
-    assert made["normal_map"] == TextureUse("t", 1.0, "normal")
+    assert made["normal_map"] == TextureUse("t", 1.0, "map")
 
 
 @pytest.mark.parametrize(
@@ -66,6 +66,7 @@ def test_a_parameter_holds_what_it_takes_from_the_texture() -> None:
         ({"opacity": {"texture": "t"}, "emission": 1}, "materials.m.opacity", "cannot go with `emission`"),
         ({"opacity": 0.5, "emission": 1}, "materials.m.opacity", "cannot go with `emission`"),
         ({"normal_map": "m"}, "materials.m.normal_map.texture", "is not a known texture"),
+        ({"bump_map": {"texture": "t", "channel": "red"}}, "materials.m.bump_map.channel", "not a known key"),
         ({"normal_map": ["t"]}, "materials.m.normal_map.texture", "is not a known texture"),
         ({"normal_map": "t", "normal_map_convention": "vulkan"}, "materials.m.normal_map_convention", "opengl"),
     ],
@@ -107,6 +108,7 @@ def test_a_wrong_texture_is_named(texture: Table, key: str, complaint: str) -> N
         (GREY, COLOURED, "srgb"),
         (GREY, NUMERIC, "data"),
         (GREY, {"normal_map": "t"}, "data"),
+        (GREY, {"bump_map": {"texture": "t", "scale": 2}}, "data"),
         (GREY, {}, "srgb"),
         (GREY.astype(np.uint16), COLOURED, "srgb"),
         (GREY / 255.0, COLOURED, "linear"),

@@ -45,7 +45,19 @@ struct MaterialCommon {
                             .kind = Kind::choice,
                             .doc = "What green means: opengl up in the picture, directx down.",
                             .preset = "\"opengl\"",
-                            .choices = "opengl|directx"});
+                            .choices = "opengl|directx"},
+                      Param{.name = "bump_map",
+                            .kind = Kind::reference,
+                            .doc = "Texture whose red channel, times its scale and bump_height, raises the surface for "
+                                   "shading, along the normal that a normal map gives.",
+                            .role = "texture",
+                            .texturable = true},
+                      Param{.name = "bump_height",
+                            .kind = Kind::real,
+                            .doc = "Height of the bump map's value 1.",
+                            .preset = "0.01",
+                            .unit = "m",
+                            .animatable = true});
   }
 };
 

@@ -88,7 +88,7 @@ struct PathTracing {
     const float u_roulette = u_decision[2];
 
     const ShadingPoint point = shading_point(scene, material, path, surface, exterior);
-    const Frame frame = shading_frame(scene, material, surface, point, toward_viewer);
+    const Frame frame = shading_frame(scene, material, surface, point, path);
     const Vec3 wo = frame.to_local(toward_viewer);
     path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
       using Bsdf = typename decltype(type)::type;

@@ -44,7 +44,7 @@ struct Reference {
       const f32x4 u = path.sampler.draw(direction_set(path));
       const f32x4 u_decision = path.sampler.draw(decision_set(path));
       const ShadingPoint point = shading_point(scene, material, path, surface, exterior);
-      const Frame frame = shading_frame(scene, material, surface, point, toward_viewer);
+      const Frame frame = shading_frame(scene, material, surface, point, path);
       const Vec3 wo = frame.to_local(toward_viewer);
       path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
         using Bsdf = typename decltype(type)::type;

@@ -5,6 +5,7 @@
 #include "kernels/bsdf/list.h"
 #include "kernels/integrator/bodies.h"
 #include "kernels/light/select.h"
+#include "kernels/texture/bump.h"
 #include "kernels/texture/normal_map.h"
 #include "kernels/texture/opacity.h"
 
@@ -28,10 +29,12 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
   return {scene, path.wl, texture_point(scene, path.hit, surface), before};
 }
 inline Frame shading_frame(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
-                           const ShadingPoint& p, Vec3 toward_viewer) {
-  const Vec3 given =
-      material.normal_map == none ? surface.shading : mapped_normal(scene, material, surface.shading, p.where);
-  const Vec3 normal = facing_normal(surface.normal, given, toward_viewer);
+                           const ShadingPoint& p, const Path& path) {
+  Vec3 normal = surface.shading;
+  if (material.normal_map != none) normal = mapped_normal(scene, material, normal, p.where);
+  if (material.bump_map != none)
+    normal = bumped_normal(scene, material.bump_map, material.bump_height, path.hit, normal, p.where);
+  normal = facing_normal(surface.normal, normal, -path.ray.direction);
   return material.oriented == 0 ? Frame::around(normal) : Frame::along(normal, p.where.dpdu);
 }
 

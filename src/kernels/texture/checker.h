@@ -20,6 +20,7 @@ struct CheckerTexture {
                                           ACCURAY_OFFSET_OF(CheckerTexture, second))),
                   uv_params());
   }
+  float step() const { return 0x1p-8f; }
   TextureValue value(const SceneView&, const TexturePoint& p) const {
     const Vec2 uv = map.at(p.uv);
     return opaque((fraction_of(uv.x) < 0.5f) == (fraction_of(uv.y) < 0.5f) ? first : second);

@@ -27,6 +27,7 @@ struct GradientTexture {
                          .member = ACCURAY_OFFSET_OF(GradientTexture, radial)}),
         uv_params());
   }
+  float step() const { return 0x1p-8f; }
   TextureValue value(const SceneView&, const TexturePoint& p) const {
     const Vec2 uv = map.at(p.uv);
     const float x = 2.0f * uv.x - 1.0f;

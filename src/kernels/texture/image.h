@@ -107,6 +107,7 @@ struct ImageTexture {
         uv_params());
   }
 
+  float step() const { return 0.5f / static_cast<float>(max(width, height)); }
   TextureValue value(const SceneView& scene, const TexturePoint& p) const {
     const Vec2 uv = map.at(p.uv);
     const TexelPair x = texels_at(uv.x, width, wrap_u, nearest != 0);

@@ -30,6 +30,7 @@ struct MarbleTexture {
                             .member = ACCURAY_OFFSET_OF(MarbleTexture, turbulence)},
                       octaves_param("6", ACCURAY_OFFSET_OF(MarbleTexture, octaves)));
   }
+  float step() const { return 0x1p-8f * size; }
   TextureValue value(const SceneView&, const TexturePoint& p) const {
     const Vec3 q = p.point * (1.0f / size);
     const float stripe = fma(turbulence, octave_noise(q, static_cast<uint32_t>(octaves), 0.5f), q.x);

@@ -102,6 +102,7 @@ struct NoiseTexture {
                       size_param("Width of the largest features.", ACCURAY_OFFSET_OF(NoiseTexture, size)),
                       octaves_param("4", ACCURAY_OFFSET_OF(NoiseTexture, octaves)));
   }
+  float step() const { return 0x1p-8f * size; }
   TextureValue value(const SceneView&, const TexturePoint& p) const {
     const float n = octave_noise(p.point * (1.0f / size), static_cast<uint32_t>(octaves), 0.5f);
     return mixed(first, second, fma(0.5f, n, 0.5f));

@@ -28,6 +28,7 @@ struct WoodTexture {
                             .unit = "1",
                             .member = ACCURAY_OFFSET_OF(WoodTexture, turbulence)});
   }
+  float step() const { return 0x1p-8f * size; }
   // Wood darkens slowly over the year and starts anew at once.
   TextureValue value(const SceneView&, const TexturePoint& p) const {
     const Vec3 q = p.point * (1.0f / size);
