@@ -27,7 +27,7 @@ def configure(parser: Parser) -> None:
         "--tolerance",
         metavar="PERCENT",
         type=percent,
-        help="exit with 1 if the accuracy is below 100 less this, or not a number",
+        help="exit with 1 if the accuracy is below 100 %% less this",
     )
     parser.add_argument(
         "--exposure",
@@ -66,7 +66,7 @@ def run(options: Namespace) -> int:
         comparison = accuray.compare(options.image, options.reference, **settings)
     except accuray.ImageError as error:
         raise UsageError(str(error), COMMAND) from error
-    exceeded = options.tolerance is not None and not comparison.accuracy >= 100.0 - options.tolerance
+    exceeded = options.tolerance is not None and comparison.accuracy < 100.0 - options.tolerance
     limit = None if options.diff is None else comparison.save_heat_map(options.diff)
     if options.json:
         more = {} if limit is None else {"diff": str(options.diff), "diff_white": limit}

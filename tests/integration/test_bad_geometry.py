@@ -20,6 +20,7 @@ from fair import FOLDER, Table, shipped
 pytest.importorskip("accuray._core", reason="the compiled module is not built")
 import accuray
 from accuray.cli import main
+from accuray.scene import schema
 
 NAN, INF = float("nan"), float("inf")
 SPP = 8
@@ -248,19 +249,20 @@ def test_from_the_middle_of_a_glass_ball_all_is_n_squared_bright() -> None:
 def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
     """The same scene, every length times a factor; the intensity of point lights goes with its square."""
 
-    def lengths(table: Table, names: tuple[str, ...]) -> Table:
-        found = {name: table[name] for name in names if table.get(name) is not None}
-        return table | {name: _times(value, factor) for name, value in found.items()}
+    def lengths(family: str, table: Table) -> Table:
+        params = schema.current().family(family).types[table["type"]].params
+        given = [p.name for p in params if p.unit == "m" and p.role != "absolute" and table.get(p.name) is not None]
+        found = {name: _times(table[name], factor) for name in given}
+        if table.get("transform") is not None:
+            found["transform"] = table["transform"] * np.array([[1, 1, 1, factor]] * 3 + [[1, 1, 1, 1]])
+        return table | found
 
-    shapes = {
-        name: lengths(table, ("positions", "center", "radius", "corner", "edge_u", "edge_v"))
-        for name, table in scene.shapes.items()
-    }
-    lights = {name: lengths(table, ("position",)) for name, table in scene.lights.items()}
+    shapes = {name: lengths("shape", table) for name, table in scene.shapes.items()}
+    lights = {name: lengths("light", table) for name, table in scene.lights.items()}
     for table in lights.values():
         if table["type"] == "point":
             table["intensity"] = replace(table["intensity"], scale=table["intensity"].scale * factor**2)
-    return replace(scene, shapes=shapes, lights=lights, camera=lengths(scene.camera, ("position", "look_at")))
+    return replace(scene, shapes=shapes, lights=lights, camera=lengths("camera", scene.camera))
 
 
 def _times(value: Any, factor: float) -> Any:
