@@ -45,6 +45,14 @@ constexpr auto param_list(P... p) {
   return ParamList<sizeof...(P)>{{p...}};
 }
 
+template <uint32_t A, uint32_t B>
+constexpr ParamList<A + B> joined(const ParamList<A>& a, const ParamList<B>& b) {
+  ParamList<A + B> result{};
+  for (uint32_t i = 0; i < A; ++i) result.items[i] = a.items[i];
+  for (uint32_t i = 0; i < B; ++i) result.items[A + i] = b.items[i];
+  return result;
+}
+
 struct NoParams {
   static constexpr uint32_t size = 0;
   static constexpr const Param* items = nullptr;
