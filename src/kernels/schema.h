@@ -45,12 +45,12 @@ constexpr auto param_list(P... p) {
   return ParamList<sizeof...(P)>{{p...}};
 }
 
-template <uint32_t N, uint32_t M>
-constexpr ParamList<N + M> joined(const ParamList<N>& a, const ParamList<M>& b) {
-  ParamList<N + M> both;
-  for (uint32_t i = 0; i < N; ++i) both.items[i] = a.items[i];
-  for (uint32_t i = 0; i < M; ++i) both.items[N + i] = b.items[i];
-  return both;
+template <uint32_t A, uint32_t B>
+constexpr ParamList<A + B> joined(const ParamList<A>& a, const ParamList<B>& b) {
+  ParamList<A + B> result{};
+  for (uint32_t i = 0; i < A; ++i) result.items[i] = a.items[i];
+  for (uint32_t i = 0; i < B; ++i) result.items[A + i] = b.items[i];
+  return result;
 }
 
 struct NoParams {

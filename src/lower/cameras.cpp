@@ -109,8 +109,8 @@ Tagged camera_of(Type<Perspective>, const Values& values, const FilmSize& film, 
   if (blades == 1.0 || blades == 2.0) throw BadParameter("blades", "make no opening: allowed 0, or 3 to 64");
   if (lens.radius == 0.0) return {tag_of<Perspective>(Cameras{}), pool.add(pinhole)};
   const double rotation = std::fmod(number_of(values, "blade_rotation"), 2.0 * M_PI);
-  const ThinLens camera{pinhole, static_cast<float>(lens.radius), static_cast<float>(1.0 / lens.focus),
-                        static_cast<uint32_t>(blades), static_cast<float>(rotation)};
+  const Aperture aperture{static_cast<float>(lens.radius), static_cast<uint32_t>(blades), static_cast<float>(rotation)};
+  const ThinLens camera{pinhole, aperture, static_cast<float>(1.0 / lens.focus)};
   return {tag_of<ThinLens>(Cameras{}), pool.add(camera)};
 }
 

@@ -1,6 +1,7 @@
 // Straight lines stay straight: a pinhole, or with an aperture a thin lens (thin_lens.h, which the lowering chooses).
 #pragma once
 
+#include "kernels/camera/aperture.h"
 #include "kernels/camera/camera.h"
 
 namespace accuray {
@@ -13,7 +14,7 @@ struct Perspective {
   static constexpr const char* name = "perspective";
   static constexpr const char* doc =
       "A pinhole, with everything in focus, or a thin lens if it has an aperture; straight lines stay straight.";
-  static constexpr auto params() {
+  static constexpr auto projection_params() {
     return param_list(
         Param{.name = "fov",
               .kind = Kind::real,
@@ -58,56 +59,9 @@ struct Perspective {
               .preset = "0",
               .low = -10,
               .high = 10,
-              .animatable = true},
-        Param{.name = "aperture_radius",
-              .kind = Kind::real,
-              .doc = "Radius of the lens's opening, 0 for a pinhole; a bare number is in metres whatever length_unit "
-                     "says.",
-              .preset = "0",
-              .low = 0,
-              .high = 1e3,
-              .unit = "m",
-              .role = "absolute",
-              .group = "aperture:radius",
-              .animatable = true},
-        Param{.name = "f_number",
-              .kind = Kind::real,
-              .doc = "Focal length over the diameter of the opening; needs focal_length and film_size.",
-              .low = 0.01,
-              .high = 1e6,
-              .group = "aperture:f_number",
-              .animatable = true},
-        Param{.name = "focus_distance",
-              .kind = Kind::real,
-              .doc = "Distance of the plane in focus from the lens, along the axis; by default that of look_at.",
-              .low = 1e-6,
-              .high = 1e9,
-              .unit = "m",
-              .group = "focus?:distance",
-              .animatable = true},
-        Param{.name = "focus_point",
-              .kind = Kind::vec,
-              .doc = "A point of the plane in focus.",
-              .low = -1e12,
-              .high = 1e12,
-              .unit = "m",
-              .group = "focus?:point",
-              .animatable = true},
-        Param{.name = "blades",
-              .kind = Kind::integer,
-              .doc = "Blades of the aperture: a regular polygon with its corners on the circle of the opening; 0: the "
-                     "circle itself.",
-              .preset = "0",
-              .low = 0,
-              .high = 64},
-        Param{.name = "blade_rotation",
-              .kind = Kind::real,
-              .doc = "Turns the polygon counter-clockwise as the picture shows it far behind the focus; at 0 a corner "
-                     "points to the right.",
-              .preset = "0",
-              .unit = "deg",
               .animatable = true});
   }
+  static constexpr auto params() { return joined(projection_params(), Aperture::params()); }
 
   static constexpr bool has_lens = false;
 
