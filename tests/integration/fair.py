@@ -85,6 +85,9 @@ FAIR = {
     "spheres": Fair(
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
+    "textured": Fair(
+        "the lamp 2.5 times as wide and long, 1/6.25 as bright", partial(enlarged, lamp="lamp", factor=2.5)
+    ),
     "zoo": Fair("as it is: its lamps are large"),
 }
 
