@@ -29,10 +29,15 @@ struct ShadingPoint {
 
   Spectrum spectrum(SpectrumRef ref) const {
     const SpectrumRecord& s = scene.spectra[ref.index];
-    if (s.form == SpectrumForm::textured) return textured_reflectance(scene, s, where, wl);
+    if (s.form == SpectrumForm::textured) [[unlikely]]
+      return textured_reflectance(scene, s, where, wl);
     return evaluate(s, scene.tables, wl);
   }
-  float real(const RealRef& ref) const { return ref.texture == none ? ref.value : textured_real(scene, ref, where); }
+  float real(const RealRef& ref) const {
+    if (ref.texture != none) [[unlikely]]
+      return textured_real(scene, ref, where);
+    return ref.value;
+  }
 };
 
 enum Lobe : uint32_t {

@@ -31,10 +31,12 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
 inline Frame shading_frame(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
                            const ShadingPoint& p, const Path& path) {
   Vec3 normal = surface.shading;
-  if (material.normal_map != none) normal = mapped_normal(scene, material, normal, p.where);
-  if (material.bump_map != none)
+  if (material.normal_map != none) [[unlikely]]
+    normal = mapped_normal(scene, material, normal, p.where);
+  if (material.bump_map != none) [[unlikely]]
     normal = bumped_normal(scene, material.bump_map, material.bump_height, path.hit, normal, p.where);
-  normal = facing_normal(surface.normal, normal, -path.ray.direction);
+  if (normal.x != surface.normal.x || normal.y != surface.normal.y || normal.z != surface.normal.z)
+    normal = facing_normal(surface.normal, normal, -path.ray.direction);
   return material.oriented == 0 ? Frame::around(normal) : Frame::along(normal, p.where.dpdu);
 }
 
@@ -46,9 +48,11 @@ inline uint32_t opacity_key(const Path& path, OpacityStream stream) {
 
 template <Accel A>
 inline void intersect(const SceneView& scene, const A& accel, Path& path) {
-  path.hit = scene.root->any_opacity == 0
-                 ? accel.closest(path.ray)
-                 : closest_opaque(scene, accel, path.ray, opacity_key(path, OpacityStream::path));
+  if (scene.root->any_opacity != 0) [[unlikely]] {
+    path.hit = closest_opaque(scene, accel, path.ray, opacity_key(path, OpacityStream::path));
+  } else {
+    path.hit = accel.closest(path.ray);
+  }
 }
 
 inline Spectrum environment_radiance(const SceneView& scene, const Wavelengths& wl) {
@@ -95,10 +99,10 @@ inline float visible_share(const SceneView& scene, const A& accel, const Path& p
   const Vec3 from = offset_origin(surface.point, surface.error, surface.normal, light.wi);
   const bool endless = light.distance == infinity;
   const Vec3 to = endless ? from : offset_origin(light.point, light.error, light.normal, -light.wi);
-  const Ray ray =
-      endless ? Ray{from, light.wi, infinity, path.ray.time} : Ray{from, to - from, one_minus_epsilon, path.ray.time};
-  if (scene.root->any_opacity == 0) return accel.transmittance(ray);
-  return opaque_transmittance(scene, accel, ray, to, opacity_key(path, OpacityStream::light));
+  const Ray ray = {from, endless ? light.wi : to - from, endless ? infinity : one_minus_epsilon, path.ray.time};
+  if (scene.root->any_opacity != 0) [[unlikely]]
+    return opaque_transmittance(scene, accel, ray, to, opacity_key(path, OpacityStream::light));
+  return accel.transmittance(ray);
 }
 
 // Share of a light sample that the body around it lets through, on whichever side of the surface it comes from.
