@@ -79,7 +79,7 @@ class _Lowering:
                 value = param.choices.index(value)
             elif param.kind == "spectrum":
                 value = self._spectrum(value)
-            values[param.name] = float(value) if param.kind in ("float", "int", "enum") else value
+            values[param.name] = float(value) if param.kind in ("bool", "float", "int", "enum") else value
         return values
 
     def _add_material(self, name: str, material: Values) -> None:

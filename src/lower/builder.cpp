@@ -66,8 +66,14 @@ uint32_t SceneBuilder::add_material(std::string_view type, const Values& values,
                                     bool both_sides) {
   const bool emits = emission && !spectra_.is_zero(*emission);
   const Tagged bsdf = lower_type(Bsdfs{}, type, values, pool_);
-  const bool oriented =
-      dispatch(Bsdfs{}, bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::oriented; }; });
+  const bool oriented = dispatch(Bsdfs{}, bsdf.tag, [&](auto listed) {
+    using Bsdf = typename decltype(listed)::type;
+    if constexpr (requires(const Bsdf& b) { b.oriented(); }) {
+      return reinterpret_cast<const Bsdf*>(pool_.words().data() + bsdf.offset)->oriented();
+    } else {
+      return false;
+    }
+  });
   materials_.push_back({bsdf, {emits ? emission->index : none}, both_sides ? 1u : 0u, oriented ? 1u : 0u});
   return static_cast<uint32_t>(materials_.size() - 1);
 }
