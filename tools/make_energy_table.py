@@ -4,7 +4,7 @@
 
 Losses are 1 minus the directional albedo of a lossless surface of GGX facets with Smith's masking, by quadrature over
 the facets that a direction sees (Dupuy and Benyoub 2023) and over reflection and refraction at each of them. The
-kernels interpolate linearly between the nodes, see kernels/bsdf/energy.h for the coordinates. It takes some seconds.
+kernels interpolate linearly between the nodes, see kernels/bsdf/energy.h for the coordinates. It takes a minute.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ SPECTRAL: dict[str, Any] = {
 #: Sets of interest that neither defaults nor chance would give.
 MORE: dict[str, list[dict[str, Any]]] = {
     "conductor": [{"metal": "Cu", "roughness": 0.3, "anisotropy": 0.5}],
-    "dielectric": [{"ior": "SF11", "roughness": 0.5}, {"ior": 1.33, "roughness": 0.25, "anisotropy": 0.7}],
+    "dielectric": [{"ior": "SF11", "roughness": 0.5}, {"ior": 1.33, "roughness": 0.5, "anisotropy": 0.5}],
 }
 DIRECTIONS = {
     "0 deg": unit(0.0, 0.0, 1.0),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from tests.kernels.support import SEED, Bsdf, FloatArray, bsdfs, uniform, unit
 FIGURES = Path(__file__).parents[1] / "verify" / "physics_expected.json"
 ALPHAS = (0.1, 0.3, 0.5, 1.0)
 COSINES = (1.0, 0.5, 0.1)
-SAMPLES = 60_000
+SAMPLES = 40_000
 
 
 @cache
@@ -182,10 +183,18 @@ def test_a_pane_transmits_what_a_slab_does(degrees: float, expected: float) -> N
 
 
 def fujii(wo: FloatArray, wi: FloatArray, roughness: float) -> FloatArray:
-    """Value times pi of a white surface after one scattering: Oren and Nayar's model in Fujii's form, with EON's scale."""
+    """Value times pi of a white surface after one scattering: Oren and Nayar's model in Fujii's form, scaled as EON."""
     s = wi @ wo - wi[:, 2] * wo[2]
     t = np.where(s > 0.0, np.maximum(wi[:, 2], wo[2]), 1.0)
     return np.asarray((1.0 + roughness * s / t) / (1.0 + (0.5 - 2.0 / (3.0 * math.pi)) * roughness))
+
+
+def hemisphere_mean(f: Callable[[FloatArray], FloatArray]) -> float:
+    """Mean over cosine-weighted directions, by the midpoints of a grid."""
+    u, v = ((np.arange(n) + 0.5) / n for n in (200, 400))
+    square, phi = (a.ravel() for a in np.meshgrid(u, 2.0 * math.pi * v, indexing="ij"))
+    r = np.sqrt(square)
+    return float(np.mean(f(np.stack([r * np.cos(phi), r * np.sin(phi), np.sqrt(1.0 - square)], axis=1))))
 
 
 @pytest.mark.parametrize("roughness", [0.3, 1.0])
@@ -195,9 +204,7 @@ def test_rough_matte_surfaces_lose_nothing_and_shine_as_published(roughness: flo
 
     def once(cosine: float) -> float:
         o = toward(cosine)
-        return eval_albedo(
-            lambda wi: np.where(wi[:, 2] > 0, fujii(o, wi, roughness) * wi[:, 2] / math.pi, 0.0), tolerance=1e-5
-        )
+        return hemisphere_mean(lambda wi: fujii(o, wi, roughness))
 
     nodes, weights = np.polynomial.legendre.leggauss(12)
     mean = sum(w * c * once(c) for c, w in zip(0.5 * (nodes + 1.0), weights, strict=True))
@@ -207,7 +214,7 @@ def test_rough_matte_surfaces_lose_nothing_and_shine_as_published(roughness: flo
         share = once(cosine)
         expected = rho * share + rho**2 * mean * (1.0 - share) / (1.0 - rho * (1.0 - mean))
         for bsdf, value in ((white, 1.0), (grey, expected)):
-            found = eval_albedo(lambda wi, at=bsdf, o=wo: at.eval_one(o, wi)[0][:, 0], tolerance=1e-5)
+            found = hemisphere_mean(lambda wi, at=bsdf, o=wo: at.eval_one(o, wi)[0][:, 0] * math.pi / wi[:, 2])
             assert found == pytest.approx(value, abs=2e-4), cosine
 
 
@@ -248,8 +255,8 @@ def test_all_strategies_agree_on_dispersing_frosted_glass() -> None:
         {"type": "path", "max_depth": 4, "strategy": "bsdf"},
     ):
         scene = accuray.Scene.from_dict(frosted_pane(integrator))
-        rays = 256
-        found = accuray.radiance(scene, [[0, 0, 1]] * rays, [[0.05, 0.02, -1]] * rays, 1024, seed=SEED, space="xyz")
+        rays = 64
+        found = accuray.radiance(scene, [[0, 0, 1]] * rays, [[0.05, 0.02, -1]] * rays, 2048, seed=SEED, space="xyz")
         results.append((found.mean.mean(axis=0), found.mean.std(axis=0, ddof=1) / math.sqrt(rays)))
     truth, its_error = results[0]
     assert (its_error < 0.02 * truth).all()

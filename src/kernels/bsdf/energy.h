@@ -38,10 +38,10 @@ struct EnergyPlace {
   float reach;
   float strength;  // share of the loss that is given back
 
-  // Stretched facets lose up to a quarter less in some directions than round ones of the same mean slope, and more in
-  // others; what is given back stays below what any of them loses.
+  // The table knows round facets. Stretched ones of the same mean slope lose more in some directions and less in
+  // others, the less the narrower they are; what is given back stays below the least that any direction loses.
   static EnergyPlace of(float roughness, float anisotropy, bool compensate) {
-    const float strength = compensate ? 1.0f - 0.28f * min(2.0f * anisotropy, 1.0f) : 0.0f;
+    const float strength = compensate ? (1.0f - anisotropy) * (1.0f - 0.3f * anisotropy) : 0.0f;
     return {TablePlace<energy_roughnesses>::at(roughness),
             energy_reach * max(roughness * roughness, energy_least_alpha), strength};
   }
