@@ -75,7 +75,7 @@ def _choose_alternatives(type_: Type, given: dict[str, Any], where: Where) -> di
             names = [param.name for name in used for param in alternatives[name] if param.name in given]
             raise where.child(names[-1]).error(f"has `{names[0]}` and `{names[-1]}` at once", allowed=text)
         if not used:
-            used = [name for name, group in alternatives.items() if any(param.default is not None for param in group)]
+            used = [name for name, group in alternatives.items() if all(param.default is not None for param in group)]
         if not used and not optional:
             raise where.error("lacks its " + set_name, allowed=text)
         chosen[set_name] = used[0] if used else ""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from accuray.verify import colorimetry, optics
+from accuray.verify import colorimetry, optics, roughness
 from accuray.verify.case import Case
 from accuray.verify.probes import ImageProbe, RayProbe, Rays, meeting_origin, parallel_beam
 from accuray.verify.scenes import (
@@ -151,4 +151,4 @@ def _images() -> list[Case]:
 
 def cases() -> list[Case]:
     """All cases of this chapter."""
-    return [*_furnaces(), *_images()]
+    return [*_furnaces(), *_images(), *roughness.cases()]

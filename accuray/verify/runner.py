@@ -93,6 +93,7 @@ def measure(case: Case, effort: Effort, seed: int = 0) -> list[Row]:
             samples,
             seconds / len(case.expected),
             note,
+            case.tolerance,
         )
         for label, expected, mean, error in numbers
     ]

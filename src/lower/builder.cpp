@@ -94,8 +94,14 @@ uint32_t SceneBuilder::add_material(std::string_view type, const Values& values,
   const auto any_textured = [&](const Values& some) {
     return std::any_of(some.begin(), some.end(), [&](const auto& named) { return is_textured(named.second); });
   };
-  const bool oriented =
-      dispatch(Bsdfs{}, material.bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::oriented; }; });
+  const bool oriented = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto listed) {
+    using Bsdf = typename decltype(listed)::type;
+    if constexpr (requires(const Bsdf& b) { b.oriented(); }) {
+      return reinterpret_cast<const Bsdf*>(pool_.words().data() + material.bsdf.offset)->oriented();
+    } else {
+      return false;
+    }
+  });
   material.oriented = oriented ? 1u : 0u;
   material.reads_texture_point = oriented || any_textured(values) || any_textured(header) ? 1u : 0u;
   materials_.push_back(material);

@@ -97,15 +97,18 @@ Param param_named(std::string_view name) {
   throw std::logic_error("no parameter is called '" + std::string(name) + "'");
 }
 
-// A struct of type T with every member that its table names filled in; the others are zero.
+// A struct of type T with every member that its table names filled in; the others are zero. Spectra of an alternative
+// that was not chosen refer to none.
 template <class T>
 T struct_of(const Values& values) {
   T result{};
   constexpr auto params = T::params();
   for (uint32_t i = 0; i < params.size; ++i) {
     const Param& param = params.items[i];
-    if (param.member != no_member)
-      write_member(param, value_of(values, param.name), reinterpret_cast<uint8_t*>(&result), sizeof(T));
+    if (param.member == no_member) continue;
+    const bool left_out = *param.group != '\0' && param.kind == Kind::spectrum && !values.contains(param.name);
+    const Value value = left_out ? Value(SpectrumRef{none}) : value_of(values, param.name);
+    write_member(param, value, reinterpret_cast<uint8_t*>(&result), sizeof(T));
   }
   return result;
 }

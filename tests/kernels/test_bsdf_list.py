@@ -30,6 +30,11 @@ SPECTRAL: dict[str, Any] = {
     "index": "SF11",
     "reflectance": {"wavelengths": [400, 500, 600, 700], "values": [0.1, 0.9, 0.3, 1.0]},
 }
+#: Sets of interest that neither defaults nor chance would give.
+MORE: dict[str, list[dict[str, Any]]] = {
+    "conductor": [{"metal": "Cu", "roughness": 0.3, "anisotropy": 0.5}],
+    "dielectric": [{"ior": "SF11", "roughness": 0.5}, {"ior": 1.33, "roughness": 0.5, "anisotropy": 0.5}],
+}
 DIRECTIONS = {
     "0 deg": unit(0.0, 0.0, 1.0),
     "30 deg": unit(0.3, -0.4, 0.866),
@@ -53,7 +58,15 @@ def materials(name: str, count: int = 24) -> list[dict[str, Any]]:
             like = next((values for values in sets if p["name"] in values), None)
             if like is not None and not (p["group"] and p["role"] == "index"):
                 sets.append({**like, p["name"]: SPECTRAL[p["role"]]})
-    return [{"type": name, **values} for values in sets]
+    return [{"type": name, **values} for values in sets + MORE.get(name, [])]
+
+
+def scattering(name: str) -> list[int]:
+    """Numbers of the sets that have more than delta lobes, those of `MORE` first."""
+    sets = materials(name)
+    u = uniform(16, 3, SEED)
+    smooth = [bsdf.sample_one(DIRECTIONS["30 deg"], u).specular.any() for bsdf in bsdfs(sets)]
+    return [i for i in reversed(range(len(sets))) if not smooth[i]]
 
 
 def claims(name: str, law: str) -> bool:
@@ -71,12 +84,13 @@ def hero_energy(bsdf: Bsdf, wo: FloatArray, u: FloatArray) -> FloatArray:
 
 
 def sampling_cases() -> list[Any]:
-    """Type, set, direction: the first set from everywhere with 10^6 samples, one more, by the seed, with less."""
+    """Type, set, direction: the first set from everywhere with 10^6 samples, two more, by the seed, with less."""
     cases = []
     for name in TABLES:
         if claims(name, "exact_pdf"):
-            count = len(materials(name))
-            for number, samples in ((0, 1_000_000), (1 + SEED % (count - 1), 200_000)):
+            first, *others = scattering(name)
+            more = [others[(SEED + i * len(others) // 2) % len(others)] for i in (0, 1)]
+            for number, samples in ((first, 1_000_000), (more[0], 200_000), (more[1], 200_000)):
                 cases += [pytest.param(name, number, d, samples, id=f"{name}-{number}-{d}") for d in DIRECTIONS]
     return cases
 
@@ -151,12 +165,18 @@ def test_no_direction_gets_back_more_than_it_gave(name: str) -> None:
         assert excess.max() <= 0.0, f"seed {SEED}, {material}: {excess.max():.3g} too much"
 
 
+#: Roughnesses at which compensated facets lose nothing either.
+ROUGH = (0.1, 0.33, 0.7, 1.0)
+COMPENSATED = 0.005
 #: What absorbs nothing: the mean weight is 1 from every direction. Other types may reflect less.
 LOSSLESS: dict[str, list[dict[str, Any]]] = {
-    "diffuse": [{"reflectance": 1.0}],
-    "conductor": [{"metal": "perfect"}, {"eta": 0.0, "k": 1.0}],
+    "diffuse": [{"reflectance": 1.0, "roughness": r} for r in (0.0, 0.4, 1.0)],
+    "conductor": [{"metal": "perfect"}, {"eta": 0.0, "k": 1.0}, {"reflectance": 1.0}]
+    + [{"metal": "perfect", "roughness": r, "masking": m} for r in ROUGH for m in ("correlated", "separable")],
     "dielectric": [{"ior": n} for n in (0.05, 0.4, 0.75, 1.0, 1.0001, 1.5, 2.4, 20.0)]
-    + [{"ior": "SF11"}, {"ior": "water_20C"}],
+    + [{"ior": "SF11"}, {"ior": "water_20C"}]
+    + [{"ior": n, "roughness": r} for n in (0.05, 0.7, 1.01, 1.5, 4.0, "SF11") for r in ROUGH],
+    "thin_dielectric": [{"ior": n} for n in (0.5, 1.0, 1.5, "SF11")],
 }
 
 
@@ -171,6 +191,7 @@ def test_what_absorbs_nothing_returns_everything(name: str) -> None:
     for material, bsdf in zip(sets, bsdfs(sets), strict=True):
         weight = hero_energy(bsdf, wo, u).reshape(len(directions), count, -1)
         allowed = 5.0 * weight.std(axis=1, ddof=1) / np.sqrt(count) + 1e-5
+        allowed += COMPENSATED if material.get("roughness", 0.0) > 0.0 else 0.0
         wrong = np.abs(weight.mean(axis=1) - 1.0) - allowed
         assert wrong.max() <= 0.0, f"seed {SEED}, {material}: {wrong.max():.3g} beyond the noise"
 

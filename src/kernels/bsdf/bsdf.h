@@ -5,13 +5,15 @@
 //
 // Conventions
 //   - Directions are unit vectors that leave the surface, in the local frame whose +z is the shading normal on the
-//     front side and, if X::oriented, whose +x follows dpdu. `wo` points to where the path came from and is given, `wi`
-//     to where light comes from.
+//     front side and, if X::oriented(), whose +x follows dpdu. `wo` points to where the path came from and is given,
+//     `wi` to where light comes from.
 //   - eval(wo, wi) is f |cos(theta_i)| per lane, pdf(wo, wi) the density of wi per solid angle; both are 0 for
 //     perfectly specular (delta) lobes.
 //   - sample(wo, u_lobe, u) returns weight = f |cos(theta_i)| / pdf, or the whole weight of a delta lobe. A failed
 //     sample has weight 0.
 //   - Transmitted radiance is scaled by (eta_o / eta_i)^2, eta_o being the index on the side of wo.
+//   - XAt::is_delta() says that all lobes are, XAt::lobe what the others are. A BSDF whose density depends on which
+//     wavelength is the hero has pdfs(wo, wi) besides: the density by lane, if each were the hero.
 #pragma once
 
 #include "kernels/geometry/texture_point.h"
@@ -45,7 +47,8 @@ enum Lobe : uint32_t {
   lobe_diffuse = 1,
   lobe_specular = 2,  // delta
   lobe_transmission = 4,
-  lobe_disperses = 8  // the direction depends on the wavelength: only the hero goes on
+  lobe_disperses = 8,  // the direction depends on the wavelength: only the hero goes on
+  lobe_glossy = 16     // around a mirrored or refracted direction
 };
 
 struct BsdfSample {

@@ -1,30 +1,40 @@
-// A perfectly smooth interface between two transparent media: exact Fresnel, Snell and total internal reflection.
+// An interface between two transparent media: exact Fresnel, Snell and total internal reflection, on the surface itself
+// where it is smooth and on its facets where it is rough (rough_interface.h).
 //
 // Reflection is chosen with the mean of the lanes' reflectances, which is the balance heuristic over which wavelength
 // might have been the hero (Wilkie et al. 2014, eq. 9): no lane's weight exceeds 4.
 #pragma once
 
-#include "kernels/bsdf/bsdf.h"
-#include "kernels/bsdf/fresnel.h"
+#include "kernels/bsdf/rough_interface.h"
+#include "kernels/bsdf/rough_params.h"
 
 namespace accuray {
 
 struct DielectricAt {
-  Spectrum ior;    // index behind the surface over index before it
-  bool disperses;  // the index depends on the wavelength
-  bool hero_only;  // the other lanes carry nothing any more
+  RoughInterface rough;
 
-  static constexpr bool delta_only = true;
+  static constexpr uint32_t lobe = lobe_glossy;
+  // Facets of an interface that hardly refracts change nothing, and their half vectors are lost in rounding.
+  bool is_delta() const { return rough.facets.is_smooth() || abs(rough.ior[0] - 1.0f) < smallest_step; }
 
-  Spectrum eval(Vec3, Vec3) const { return lanes(0.0f); }
-  float pdf(Vec3, Vec3) const { return 0.0f; }
+  Spectrum eval(Vec3 wo, Vec3 wi) const { return is_delta() ? lanes(0.0f) : rough.lobes(wo, wi).value; }
+  float pdf(Vec3 wo, Vec3 wi) const { return pdfs(wo, wi)[0]; }
+  // By lane, if each were the hero.
+  Spectrum pdfs(Vec3 wo, Vec3 wi) const { return is_delta() ? lanes(0.0f) : rough.lobes(wo, wi).pdf; }
 
-  BsdfSample sample(Vec3 wo, float u_lobe, Vec2) const {
+  BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
     if (wo.z == 0.0f) return no_sample();
+    return is_delta() ? smooth_sample(wo, u_lobe) : rough.sample(wo, u_lobe, u);
+  }
+
+ private:
+  static constexpr float smallest_step = 2e-3f;
+
+  BsdfSample smooth_sample(Vec3 wo, float u_lobe) const {
     const float cos_o = abs(wo.z);
-    const Spectrum eta = wo.z > 0.0f ? ior : 1.0f / ior;
+    const Spectrum eta = wo.z > 0.0f ? rough.ior : 1.0f / rough.ior;
     const Spectrum reflectance = fresnel_dielectric(cos_o, eta);
-    const float chance = hero_only ? reflectance[0] : 0.25f * sum(reflectance);
+    const float chance = rough.hero_only ? reflectance[0] : 0.25f * sum(reflectance);
     if (u_lobe < chance) {
       return {{-wo.x, -wo.y, wo.z}, reflectance / chance, 0.0f, lobe_specular, 1.0f};
     }
@@ -35,19 +45,21 @@ struct DielectricAt {
     const float cos_t = sqrt(1.0f - sin2_t);
     const Vec3 wi = {-wo.x / e, -wo.y / e, wo.z > 0.0f ? -cos_t : cos_t};
     const Spectrum weight = (1.0f - reflectance) / ((1.0f - chance) * eta * eta);
-    const uint32_t lobe = lobe_specular | lobe_transmission | (disperses ? lobe_disperses : 0u);
-    return {wi, weight, 0.0f, lobe, e * e};
+    const uint32_t way = lobe_specular | lobe_transmission | (rough.disperses ? lobe_disperses : 0u);
+    return {wi, weight, 0.0f, way, e * e};
   }
 };
 
 struct Dielectric {
   SpectrumRef ior;
+  float roughness, anisotropy;
+  uint32_t compensate;
 
   static constexpr const char* name = "dielectric";
   static constexpr const char* doc =
-      "A perfectly smooth surface of glass, water and the like: exact Fresnel reflection and refraction with "
+      "A surface of glass, water and the like, polished or frosted: exact Fresnel reflection and refraction with "
       "dispersion.";
-  static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true};
+  static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
     return param_list(
         Param{.name = "ior",
@@ -64,8 +76,7 @@ struct Dielectric {
               .member = ACCURAY_OFFSET_OF(Dielectric, ior)},
         Param{.name = "transmission_color",
               .kind = Kind::spectrum,
-              .doc = "Share of the light that is left after transmission_depth inside the body, which "
-                     "must be closed.",
+              .doc = "Share of the light that is left after transmission_depth inside the body, which must be closed.",
               .low = 0,
               .high = 1,
               .unit = "1",
@@ -83,12 +94,17 @@ struct Dielectric {
                      "surface is an interface by itself, and ior relative to whatever is around it.",
               .preset = "0",
               .low = 0,
-              .high = 1e6});
+              .high = 1e6},
+        roughness_param(ACCURAY_OFFSET_OF(Dielectric, roughness)),
+        anisotropy_param(ACCURAY_OFFSET_OF(Dielectric, anisotropy)),
+        compensate_param(ACCURAY_OFFSET_OF(Dielectric, compensate)));
   }
+  bool oriented() const { return anisotropy > 0.0f; }
   DielectricAt at(const ShadingPoint& p) const {
     const Spectrum relative = p.spectrum(ior) / p.exterior;
     const bool disperses = relative[0] != relative[1] || relative[0] != relative[2] || relative[0] != relative[3];
-    return {relative, disperses, p.wl.hero_only};
+    const EnergyPlace place = EnergyPlace::of(roughness, anisotropy, compensate != 0);
+    return {{relative, disperses, p.wl.hero_only, Ggx::of(roughness, anisotropy), place}};
   }
 };
 

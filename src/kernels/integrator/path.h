@@ -29,8 +29,9 @@ struct PathTracing {
               .member = ACCURAY_OFFSET_OF(PathTracing, max_depth)},
         Param{.name = "depth_budget",
               .kind = Kind::integer,
-              .doc = "Weighted depth that a path may spend: a transmission costs 1, a specular reflection 2, a diffuse "
-                     "one 4; 0 sets no such limit.",
+              .doc =
+                  "Weighted depth that a path may spend: a smooth transmission costs 1, a mirror reflection and what "
+                  "a glossy surface does 2, a diffuse reflection 4; 0 sets no such limit.",
               .preset = "0",
               .low = 0,
               .high = 1e6,
@@ -93,10 +94,8 @@ struct PathTracing {
     path.alive = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto type) {
       using Bsdf = typename decltype(type)::type;
       const auto bsdf = scene.as<Bsdf>(material.bsdf).at(point);
-      if constexpr (!decltype(bsdf)::delta_only) {
-        if (can_afford(path, lobe_diffuse)) {
-          sample_light(scene, accel, strategy, material, surface, frame, bsdf, wo, u_light, u_choice, path);
-        }
+      if (!bsdf.is_delta() && can_afford(path, bsdf.lobe)) {
+        sample_light(scene, accel, strategy, material, surface, frame, bsdf, wo, u_light, u_choice, path);
       }
       const BsdfSample sample = bsdf.sample(wo, u_lobe, u_bsdf);
       return can_afford(path, sample.lobe) && scatter(material, surface, frame, sample, path);

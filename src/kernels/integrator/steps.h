@@ -19,6 +19,17 @@ inline float mis_weight(float pdf, float other) {
   const float a = pdf * pdf;
   return a / (a + other * other);
 }
+// Share of a light sample, by lane where the BSDF's density depends on which of them is the hero: a path that refracts
+// goes on with its hero alone, and its other half must be the same function of the wavelength.
+template <class BsdfAt>
+inline Spectrum light_weight(float pdf, const BsdfAt& bsdf, Vec3 wo, Vec3 wi) {
+  if constexpr (requires { bsdf.pdfs(wo, wi); }) {
+    const Spectrum other = bsdf.pdfs(wo, wi);
+    return pdf * pdf / (pdf * pdf + other * other);
+  } else {
+    return lanes(mis_weight(pdf, bsdf.pdf(wo, wi)));
+  }
+}
 
 // Where the BSDF of a hit reads its values, and the frame that its directions are in.
 inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& material, const Path& path,
@@ -134,18 +145,20 @@ inline void sample_light(const SceneView& scene, const A& accel, Strategy strate
   const Spectrum f = same_side ? bsdf.eval(wo, wi) : lanes(0.0f);
   if (is_black(f)) return;
   const float pdf = light.pdf * choice.probability;
-  const float weight = delta || strategy == Strategy::light ? 1.0f : mis_weight(pdf, bsdf.pdf(wo, wi));
+  const bool alone = delta || strategy == Strategy::light;
+  const Spectrum weight = alone ? lanes(1.0f) : light_weight(pdf, bsdf, wo, wi);
   const float share = visible_share(scene, accel, path, surface, light);
   if (share == 0.0f) return;
-  Spectrum arriving = scene.spectrum(record.emission, path.wl) * (light.scale * weight * share / pdf);
+  Spectrum arriving = scene.spectrum(record.emission, path.wl) * weight * (light.scale * share / pdf);
   if (path.inside.count != 0) arriving *= share_towards(scene, material, surface, light, path);
   path.radiance = fma(path.throughput * f, arriving, path.radiance);
 }
 
-// What a lobe costs of the weighted depth budget (AccuRay report 2014).
+// What a lobe costs of the weighted depth budget (AccuRay report 2014). Both sides of a glossy surface cost the same,
+// so that light found by its direction and light found by choosing a lamp end at the same depth.
 inline uint32_t depth_cost(uint32_t lobe) {
-  if ((lobe & lobe_transmission) != 0) return 1;
-  return (lobe & lobe_specular) != 0 ? 2 : 4;
+  if ((lobe & lobe_diffuse) != 0) return 4;
+  return (lobe & lobe_specular) != 0 && (lobe & lobe_transmission) != 0 ? 1 : 2;
 }
 
 // Continues the path along a BSDF sample; false if there is nothing to continue.

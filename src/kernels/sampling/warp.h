@@ -26,6 +26,14 @@ inline Vec3 square_to_cosine_hemisphere(Vec2 u) {
 }
 inline float cosine_hemisphere_pdf(float cos_theta) { return max(cos_theta, 0.0f) * inv_pi; }
 
+// Uniform hemisphere around +z.
+inline Vec3 square_to_hemisphere(Vec2 u) {
+  const float r = sqrt(max(0.0f, 1.0f - u.x * u.x));
+  const SinCos angle = sincos(2.0f * pi * u.y);
+  return {r * angle.cos, r * angle.sin, u.x};
+}
+constexpr float uniform_hemisphere_pdf = 0.5f * inv_pi;
+
 // Uniform sphere; density 1 / (4 pi).
 inline Vec3 square_to_sphere(Vec2 u) {
   const float z = 1.0f - 2.0f * u.x;

@@ -11,19 +11,20 @@ struct RetroreflectorAt {
   Spectrum reflectance;
   float exponent;
 
-  static constexpr bool delta_only = false;
+  static constexpr uint32_t lobe = lobe_diffuse;
+  static constexpr bool is_delta() { return false; }
 
   // Cosine of the angle between the directions to its power; 0 across the surface.
-  float lobe(Vec3 wo, Vec3 wi) const {
+  float peak(Vec3 wo, Vec3 wi) const {
     const float cosine = min(dot(wo, wi), 1.0f);
     if (!(wo.z * wi.z > 0.0f && cosine > 0.0f)) return 0.0f;
     return static_cast<float>(pow(static_cast<double>(cosine), static_cast<double>(exponent)));
   }
   // Scaled so that light along the normal is reflected whole (Lewis 1994).
   Spectrum eval(Vec3 wo, Vec3 wi) const {
-    return reflectance * ((exponent + 2.0f) * 0.5f * inv_pi * lobe(wo, wi) * abs(wi.z));
+    return reflectance * ((exponent + 2.0f) * 0.5f * inv_pi * peak(wo, wi) * abs(wi.z));
   }
-  float pdf(Vec3 wo, Vec3 wi) const { return (exponent + 1.0f) * 0.5f * inv_pi * lobe(wo, wi); }
+  float pdf(Vec3 wo, Vec3 wi) const { return (exponent + 1.0f) * 0.5f * inv_pi * peak(wo, wi); }
   BsdfSample sample(Vec3 wo, float, Vec2 u) const {
     const double height = pow(static_cast<double>(u.x), 1.0 / (static_cast<double>(exponent) + 1.0));
     const float cosine = static_cast<float>(height);

@@ -1,0 +1,39 @@
+// The reflectance of a metal's facet: from its complex index, or from two colours.
+#pragma once
+
+#include "kernels/bsdf/bsdf.h"
+#include "kernels/bsdf/fresnel.h"
+
+namespace accuray {
+
+struct MetalAt {
+  Spectrum a, b;  // real and imaginary part of the index; or reflectance along the normal and depth of the dip
+  bool tinted;
+
+  static MetalAt of_index(Spectrum eta, Spectrum k) { return {eta, k, false}; }
+  // Schlick's curve with a dip that gives reflectance times tint at 82 degrees, where the curves of metals are lowest
+  // (Kutz, Hasan and Edmondson 2021).
+  static MetalAt of_colours(Spectrum reflectance, Spectrum tint) {
+    constexpr float c = 1.0f / 7.0f;
+    constexpr float rest = (1.0f - c) * (1.0f - c) * (1.0f - c) * (1.0f - c) * (1.0f - c);
+    const Spectrum at_82 = reflectance + (1.0f - reflectance) * rest;
+    return {reflectance, at_82 * (1.0f - tint) * (1.0f / (c * rest * (1.0f - c))), true};
+  }
+
+  Spectrum reflectance(float cosine) const {
+    if (!tinted) return fresnel_conductor(cosine, a, b);
+    const float x = 1.0f - cosine;
+    const float x5 = x * x * x * x * x;
+    return min(max(a + (1.0f - a) * x5 - b * (cosine * x5 * x), lanes(0.0f)), lanes(1.0f));
+  }
+  // Of diffuse light: the integral of 2 cos F, in closed form, or by Gauss and Jacobi's rule of three nodes
+  // (Abramowitz and Stegun 1964, table 25.8).
+  Spectrum mean() const {
+    if (tinted) return a * (20.0f / 21.0f) + (1.0f / 21.0f) - b * (1.0f / 126.0f);
+    return fresnel_conductor(0.2123405382f, a, b) * 0.1396539598f +
+           fresnel_conductor(0.5905331356f, a, b) * 0.4584822128f +
+           fresnel_conductor(0.9114120405f, a, b) * 0.4018638274f;
+  }
+};
+
+}  // namespace accuray

@@ -1,0 +1,56 @@
+// A pane: two smooth interfaces so close that light leaves where it came in, with all reflections between them.
+//
+// With the reflectance R of one interface for unpolarised light, the pane reflects 2 R / (1 + R) and transmits the rest
+// (Stokes 1862). That takes every interface as depolarising, as two interfaces apart do here.
+#pragma once
+
+#include "kernels/bsdf/bsdf.h"
+#include "kernels/bsdf/fresnel.h"
+
+namespace accuray {
+
+struct ThinDielectricAt {
+  Spectrum ior;
+  bool hero_only;
+
+  static constexpr uint32_t lobe = lobe_specular;
+  static constexpr bool is_delta() { return true; }
+
+  Spectrum eval(Vec3, Vec3) const { return lanes(0.0f); }
+  float pdf(Vec3, Vec3) const { return 0.0f; }
+
+  BsdfSample sample(Vec3 wo, float u_lobe, Vec2) const {
+    if (wo.z == 0.0f) return no_sample();
+    const Spectrum r = fresnel_dielectric(abs(wo.z), ior);
+    const Spectrum reflectance = 2.0f * r / (1.0f + r);
+    const float chance = hero_only ? reflectance[0] : 0.25f * sum(reflectance);
+    if (u_lobe < chance) return {{-wo.x, -wo.y, wo.z}, reflectance / chance, 0.0f, lobe_specular, 1.0f};
+    const Spectrum weight = (1.0f - reflectance) / (1.0f - chance);
+    return {-wo, weight, 0.0f, lobe_specular | lobe_transmission, 1.0f};
+  }
+};
+
+struct ThinDielectric {
+  SpectrumRef ior;
+
+  static constexpr const char* name = "thin_dielectric";
+  static constexpr const char* doc =
+      "A pane of glass or a film of water as one surface: reflects and transmits without refraction, all reflections "
+      "inside it included.";
+  static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true};
+  static constexpr auto params() {
+    return param_list(Param{.name = "ior",
+                            .kind = Kind::spectrum,
+                            .doc = "Index of the pane relative to what is around it, as for a dielectric.",
+                            .preset = "1.5",
+                            .low = 0.05,
+                            .high = 20,
+                            .unit = "1",
+                            .role = "index",
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(ThinDielectric, ior)});
+  }
+  ThinDielectricAt at(const ShadingPoint& p) const { return {p.spectrum(ior), p.wl.hero_only}; }
+};
+
+}  // namespace accuray
