@@ -260,7 +260,8 @@ def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
     for table in lights.values():
         if table["type"] == "point":
             table["intensity"] = replace(table["intensity"], scale=table["intensity"].scale * factor**2)
-    return replace(scene, shapes=shapes, lights=lights, camera=lengths(scene.camera, ("position", "look_at")))
+    lens = ("focal_length", "film_size", "aperture_radius", "focus_distance", "focus_point", "height")
+    return replace(scene, shapes=shapes, lights=lights, camera=lengths(scene.camera, ("position", "look_at", *lens)))
 
 
 def _times(value: Any, factor: float) -> Any:
