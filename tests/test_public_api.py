@@ -118,7 +118,7 @@ def test_two_environments_and_degenerate_shapes_are_scene_errors() -> None:
         "lights.b": {"lights": {"a": {"type": "constant"}, "b": {"type": "constant"}}},
         "shapes.r": {"shapes": {"r": {"type": "rectangle", "edge_v": [2, 0, 0], "material": "m"}}},
         "shapes.d": {"shapes": {"d": {"type": "disk", "normal": [0, 0, 0], "material": "m"}}},
-        "camera": {"camera": {"type": "perspective", "up": [0, 0, 1]}},
+        "camera.up": {"camera": {"type": "perspective", "up": [0, 0, 1]}},
     }
     for key, part in broken.items():
         scene = accuray.Scene.from_dict({**base, **part})

@@ -124,7 +124,7 @@ def _fluxes() -> list[Case]:
                 "conservation of flux",
                 (1.0,),
                 ImageProbe(scene, _mean_of(scale), spp=2048),
-                quick=focus != FOCUS,
+                quick=focus > 1.0,
             )
         )
     return rows

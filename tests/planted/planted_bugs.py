@@ -191,11 +191,23 @@ BUGS = (
         "field-of-view-a-little-small",
         (
             Change(
-                "src/lower/builder.cpp",
-                'sincos(0.5 * number_of(values, "fov"))',
-                'sincos(0.49 * number_of(values, "fov"))',
+                "src/lower/cameras.cpp",
+                'tangent(0.5 * number_of(values, "fov"))',
+                'tangent(0.49 * number_of(values, "fov"))',
             ),
         ),
         ("C3.image-area",),
+    ),
+    Bug(
+        "film-left-at-the-focal-length",
+        (Change("src/lower/cameras.cpp", "half_film * (1.0 / f - 1.0 / lens.focus)", "half_film / f"),),
+        ("C7.blur-far",),
+    ),
+    bug(
+        "panorama-compresses-latitude",
+        "camera/panorama.h",
+        "sincos((0.5f - film.y) * pi)",
+        "sincos((0.5f - film.y) * half_pi)",
+        "C7.panorama-side",
     ),
 )

@@ -139,7 +139,7 @@ def test_limits_are_allowed_and_what_lies_beyond_is_not(section: str, type_: Typ
 def test_defaults_of_every_type_are_valid() -> None:
     for section, type_ in all_types():
         needed = any(param.required for param in type_.params) or any(
-            not any(p.default is not None for group in alternatives.values() for p in group)
+            not any(all(p.default is not None for p in group) for group in alternatives.values())
             for name, alternatives in type_.sets().items()
             if not name.endswith("?")
         )
