@@ -47,7 +47,9 @@ inline uint32_t opacity_key(const Path& path, OpacityStream stream) {
 template <Accel A>
 inline void intersect(const SceneView& scene, const A& accel, Path& path) {
   if (scene.root->any_opacity != 0) [[unlikely]] {
-    path.hit = closest_opaque(scene, accel, path.ray, opacity_key(path, OpacityStream::path));
+    const Stop stop = closest_opaque(scene, accel, path.ray, opacity_key(path, OpacityStream::path));
+    path.hit = stop.hit;
+    path.ray.origin = stop.origin;
   } else {
     path.hit = accel.closest(path.ray);
   }
