@@ -74,7 +74,7 @@ def write(name: str, pixels: FloatArray) -> None:
     spec = oiio.ImageSpec(stored.shape[1], stored.shape[0], stored.shape[2], "uint8")
     spec.attribute("oiio:UnassociatedAlpha", 1)
     spec.attribute("png:compressionLevel", 9)
-    output = oiio.ImageOutput.create(name)
+    output: Any = oiio.ImageOutput.create(name)
     if not (output.open(str(FOLDER / name), spec) and output.write_image(stored) and output.close()):
         raise SystemExit(output.geterror())
 

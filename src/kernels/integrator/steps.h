@@ -60,7 +60,9 @@ inline uint32_t opacity_key(const Path& path, OpacityStream stream) {
 template <Accel A>
 inline void intersect(const SceneView& scene, const A& accel, Path& path) {
   if (scene.root->any_opacity != 0) [[unlikely]] {
-    path.hit = closest_opaque(scene, accel, path.ray, opacity_key(path, OpacityStream::path));
+    const Stop stop = closest_opaque(scene, accel, path.ray, opacity_key(path, OpacityStream::path));
+    path.hit = stop.hit;
+    path.ray.origin = stop.origin;
   } else {
     path.hit = accel.closest(path.ray);
   }
@@ -108,12 +110,16 @@ template <Accel A>
 inline float visible_share(const SceneView& scene, const A& accel, const Path& path, const Surface& surface,
                            const LightSample& light) {
   const Vec3 from = offset_origin(surface.point, surface.error, surface.normal, light.wi);
+  const float time = path.ray.time;
   const bool endless = light.distance == infinity;
-  const Vec3 to = endless ? from : offset_origin(light.point, light.error, light.normal, -light.wi);
-  const Ray ray = {from, endless ? light.wi : to - from, endless ? infinity : one_minus_epsilon, path.ray.time};
-  if (scene.root->any_opacity != 0) [[unlikely]]
+  if (scene.root->any_opacity != 0) [[unlikely]] {
+    const Vec3 to = endless ? from : offset_origin(light.point, light.error, light.normal, -light.wi);
+    const Ray ray = {from, endless ? light.wi : to - from, endless ? infinity : one_minus_epsilon, time};
     return opaque_transmittance(scene, accel, ray, to, opacity_key(path, OpacityStream::light));
-  return accel.transmittance(ray);
+  }
+  if (endless) return accel.transmittance({from, light.wi, infinity, time});
+  const Vec3 to = offset_origin(light.point, light.error, light.normal, -light.wi);
+  return accel.transmittance({from, to - from, one_minus_epsilon, time});
 }
 
 // Share of a light sample that the body around it lets through, on whichever side of the surface it comes from.

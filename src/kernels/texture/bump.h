@@ -27,8 +27,8 @@ inline BumpStep bump_step(const SceneView& scene, uint32_t texture, Vec3 dpdu, V
 
 // The shading normal of the surface raised along it by `height` times the texture's red channel: the normal less the
 // surface gradient of the height (Mikkelsen 2010), from central differences.
-ACCURAY_NOINLINE inline Vec3 bumped_normal(const SceneView& scene, uint32_t texture, float height, const Hit& hit,
-                                           Vec3 shading, const TexturePoint& p) {
+ACCURAY_NOINLINE inline Vec3 bumped_normal(const SceneView& scene, uint32_t texture, float height, Hit hit,
+                                           Vec3 shading, TexturePoint p) {
   const auto to_object = [&](Vec3 v) {
     return hit.instance == none ? v : scene.instances[hit.instance].to_object.vector(v);
   };

@@ -13,8 +13,9 @@ namespace accuray {
 
 using Textures = TypeList<ImageTexture, CheckerTexture, GradientTexture, NoiseTexture, WoodTexture, MarbleTexture>;
 
-// Never inlined: scenes without textures shall not carry the code of all of them through every BSDF.
-ACCURAY_NOINLINE inline TextureValue texture_value(const SceneView& scene, uint32_t texture, const TexturePoint& p) {
+// Never inlined: scenes without textures shall not carry the code of all of them through every BSDF. Such functions
+// take parts of a path by value: a path whose address they knew would have to stay in memory.
+ACCURAY_NOINLINE inline TextureValue texture_value(const SceneView& scene, uint32_t texture, TexturePoint p) {
   const Tagged record = scene.textures[texture];
   return dispatch(Textures{}, record.tag,
                   [&](auto type) { return scene.as<typename decltype(type)::type>(record).value(scene, p); });
@@ -22,8 +23,8 @@ ACCURAY_NOINLINE inline TextureValue texture_value(const SceneView& scene, uint3
 
 // Reflectance of a textured spectrum: the texture's colour times the record's scale, held within [0, 1], as a smooth
 // spectrum (Jakob and Hanika 2019).
-ACCURAY_NOINLINE inline Spectrum textured_reflectance(const SceneView& scene, const SpectrumRecord& s,
-                                                      const TexturePoint& p, const Wavelengths& wl) {
+ACCURAY_NOINLINE inline Spectrum textured_reflectance(const SceneView& scene, const SpectrumRecord& s, TexturePoint p,
+                                                      Wavelengths wl) {
   const TextureValue rgb = texture_value(scene, s.table, p) * s.scale;
   const float r = rgb_lookup::clamp_unit(rgb[0]);
   const float g = rgb_lookup::clamp_unit(rgb[1]);
@@ -34,7 +35,7 @@ ACCURAY_NOINLINE inline Spectrum textured_reflectance(const SceneView& scene, co
 }
 
 // A textured number, held within its parameter's range.
-ACCURAY_NOINLINE inline float textured_real(const SceneView& scene, const RealRef& ref, const TexturePoint& p) {
+ACCURAY_NOINLINE inline float textured_real(const SceneView& scene, const RealRef& ref, TexturePoint p) {
   const TextureValue value = texture_value(scene, ref.texture, p);
   return min(max(ref.low, value[static_cast<int>(ref.channel)] * ref.value), ref.high);
 }

@@ -28,9 +28,15 @@ inline bool is_passed(const SceneView& scene, const Hit& hit, const Surface& sur
 // More surfaces than any sensible ray crosses: the one beyond stops it.
 constexpr uint32_t most_crossings = 1u << 16;
 
-// The nearest hit that stops the ray, whose origin is moved behind what it passed. Only for scenes with such surfaces.
+// The nearest hit that stops a ray, and the ray's origin behind what it passed.
+struct Stop {
+  Hit hit;
+  Vec3 origin;
+};
+
+// Only for scenes with such surfaces.
 template <Accel A>
-ACCURAY_NOINLINE inline Hit closest_opaque(const SceneView& scene, const A& accel, Ray& ray, uint32_t key) {
+ACCURAY_NOINLINE inline Stop closest_opaque(const SceneView& scene, const A& accel, Ray ray, uint32_t key) {
   Hit hit = accel.closest(ray);
   for (uint32_t crossed = 0; hit.geometry != none && crossed < most_crossings; ++crossed) {
     const Surface surface = surface_at(scene, ray, hit);
@@ -38,7 +44,7 @@ ACCURAY_NOINLINE inline Hit closest_opaque(const SceneView& scene, const A& acce
     ray.origin = offset_origin(surface.point, surface.error, surface.normal, ray.direction);
     hit = accel.closest(ray);
   }
-  return hit;
+  return {hit, ray.origin};
 }
 
 // The same between two points: does all that lies between let the ray through? `to` counts if the ray ends.
