@@ -91,6 +91,10 @@ def numeric_fields() -> list[Any]:
     ]
 
 
+#: One alternative of the sets that have no default.
+NEEDED: dict[str, dict[str, Any]] = {"conductor": {"eta": 1.0, "k": 1.0}}
+
+
 def scene_with(section: str, type_: Type, param: Param, value: Any) -> dict[str, Any]:
     """A scene whose only fault can be the value of that parameter."""
     if section in ("film", "render"):
