@@ -47,8 +47,8 @@ BUGS = (
     bug(
         "cosine-forgotten",
         "bsdf/diffuse.h",
-        "reflectance * (abs(wi.z) * inv_pi)",
-        "reflectance * inv_pi",
+        "rough(wo, wi)) * (abs(wi.z) * inv_pi)",
+        "rough(wo, wi)) * inv_pi",
         "C1.disk-off-axis/light",
     ),
     bug(
@@ -183,8 +183,8 @@ BUGS = (
     bug(
         "diffuse-bounce-costs-five",
         "integrator/steps.h",
-        "(lobe & lobe_specular) != 0 ? 2 : 4",
-        "(lobe & lobe_specular) != 0 ? 2 : 5",
+        "if ((lobe & lobe_diffuse) != 0) return 4",
+        "if ((lobe & lobe_diffuse) != 0) return 5",
         "C2.box-depth-budget",
     ),
     Bug(
