@@ -248,21 +248,27 @@ def test_from_the_middle_of_a_glass_ball_all_is_n_squared_bright() -> None:
 
 def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
     """The same scene, every length times a factor; the intensity of point lights goes with its square."""
+    families = schema.current()
 
     def lengths(family: str, table: Table) -> Table:
-        params = schema.current().family(family).types[table["type"]].params
-        given = [p.name for p in params if p.unit == "m" and p.role != "absolute" and table.get(p.name) is not None]
+        params = families.family(family).types[table["type"]].params
+        if family == "bsdf":
+            params = (*params, *families.family("material").common)
+        given = [p.name for p in params if p.unit == "m" and isinstance(table.get(p.name), (float, tuple, np.ndarray))]
         found = {name: _times(table[name], factor) for name in given}
         if table.get("transform") is not None:
             found["transform"] = table["transform"] * np.array([[1, 1, 1, factor]] * 3 + [[1, 1, 1, 1]])
         return table | found
 
     shapes = {name: lengths("shape", table) for name, table in scene.shapes.items()}
+    materials = {name: lengths("bsdf", table) for name, table in scene.materials.items()}
+    textures = {name: lengths("texture", table) for name, table in scene.textures.items()}
     lights = {name: lengths("light", table) for name, table in scene.lights.items()}
     for table in lights.values():
         if table["type"] == "point":
             table["intensity"] = replace(table["intensity"], scale=table["intensity"].scale * factor**2)
-    return replace(scene, shapes=shapes, lights=lights, camera=lengths("camera", scene.camera))
+    camera = lengths("camera", scene.camera)
+    return replace(scene, shapes=shapes, materials=materials, textures=textures, lights=lights, camera=camera)
 
 
 def _times(value: Any, factor: float) -> Any:

@@ -61,6 +61,27 @@ def test_a_texture_of_one_colour_is_that_colour(texture: Table) -> None:
     assert np.array_equal(*sums)
 
 
+@pytest.mark.parametrize(
+    "material",
+    [
+        {"type": "diffuse", "roughness": 0.5},
+        {"type": "conductor", "metal": "Cu", "roughness": 0.5},
+        {"type": "conductor", "metal": "Cu", "roughness": 0.75, "anisotropy": 0.5},
+        {"type": "dielectric", "roughness": 0.5},
+    ],
+    ids=lambda m: "-".join(m),
+)
+def test_a_texture_of_one_number_is_that_number(material: Table) -> None:
+    """Roughness and anisotropy from a map, to the bit."""
+    small = {"film": {"width": 8, "height": 8}, "camera": {"type": "perspective", "position": [0, 2, 3]}}
+    maps = {key: value for key, value in material.items() if isinstance(value, float)}
+    textures = {key: {"type": "image", "pixels": np.full((2, 2), value, np.float32)} for key, value in maps.items()}
+    textured = scene(material | {key: {"texture": key} for key in maps}, textures, **small)
+    sums = [accuray.render(one, spp=8).film.sums for one in (scene(material, **small), textured)]
+    assert sums[0].any()
+    assert np.array_equal(*sums)
+
+
 def test_the_scale_multiplies_and_reflectances_stay_below_one() -> None:
     texture = {"t": {"type": "checker", "first": [0.8] * 3, "second": [0.8] * 3}}
     for scale, expected in ((0.5, 0.4), (1.0, 0.8), (3.0, 1.0)):

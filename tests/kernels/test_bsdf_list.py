@@ -49,9 +49,17 @@ UNIT_ERROR = 1e-4
 each_type = pytest.mark.parametrize("name", list(TABLES))
 
 
+#: What tells of the body behind a surface, not of the surface.
+BODY = ("transmission_color", "transmission_depth", "priority")
+#: Densities per solid angle beyond which a lobe is too narrow for the quadrature; chi-square tests those.
+NARROW = 100.0
+#: What the table of compensation may be above what is lost, between its nodes.
+TABLE_ERROR = 1e-3
+
+
 def materials(name: str, count: int = 24) -> list[dict[str, Any]]:
     """Parameter sets of a type, the spectral ones last."""
-    table = TABLES[name]
+    table = TABLES[name] | {"params": [p for p in TABLES[name]["params"] if p["name"] not in BODY]}
     sets = parameter_sets(table, count, seed=SEED, texts={"metal": tuple(data.metals())})
     for p in table["params"]:
         if p["kind"] == "spectrum" and p["role"] in SPECTRAL:
@@ -137,7 +145,7 @@ def test_the_mean_weight_is_the_integral_of_eval(name: str) -> None:
     for material, bsdf in zip(chosen, bsdfs(chosen), strict=True):
         for wo in DIRECTIONS.values():
             s = bsdf.sample_one(wo, uniform(20_000, 3, SEED))
-            if s.specular.all():
+            if s.specular.all() or s.pdf.max() > NARROW:
                 continue  # eval() of a delta lobe is 0
             weight = np.where(s.specular, 0.0, s.weight[:, 0])
             error = weight.std(ddof=1) / np.sqrt(len(weight))
@@ -161,7 +169,8 @@ def test_no_direction_gets_back_more_than_it_gave(name: str) -> None:
     wo, u = np.repeat(directions, count, axis=0), uniform(len(directions) * count, 3, SEED)
     for material, bsdf in zip(sets, bsdfs(sets), strict=True):
         weight = hero_energy(bsdf, wo, u).reshape(len(directions), count, -1)
-        excess = weight.mean(axis=1) - 1.0 - 1e-5 - threshold * weight.std(axis=1, ddof=1) / np.sqrt(count)
+        allowed = TABLE_ERROR if material.get("compensate") else 1e-5
+        excess = weight.mean(axis=1) - 1.0 - allowed - threshold * weight.std(axis=1, ddof=1) / np.sqrt(count)
         assert excess.max() <= 0.0, f"seed {SEED}, {material}: {excess.max():.3g} too much"
 
 

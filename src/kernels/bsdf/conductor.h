@@ -72,7 +72,7 @@ struct ConductorAt {
 struct Conductor {
   SpectrumRef eta, k;
   SpectrumRef reflectance, edge_tint;
-  float roughness, anisotropy;
+  RealRef roughness, anisotropy;
   uint32_t separable;
   uint32_t compensate;
 
@@ -138,13 +138,15 @@ struct Conductor {
               .member = ACCURAY_OFFSET_OF(Conductor, separable)},
         compensate_param(ACCURAY_OFFSET_OF(Conductor, compensate)));
   }
-  bool oriented() const { return anisotropy > 0.0f; }
+  bool oriented() const { return anisotropy.texture != none || anisotropy.value > 0.0f; }
   ConductorAt at(const ShadingPoint& p) const {
     const MetalAt metal = reflectance.index == none
                               ? MetalAt::of_index(p.spectrum(eta), p.spectrum(k))
                               : MetalAt::of_colours(p.spectrum(reflectance), p.spectrum(edge_tint));
-    const EnergyPlace place = EnergyPlace::of(roughness, anisotropy, compensate != 0);
-    return {metal, Ggx::of(roughness, anisotropy), {place, separable != 0}};
+    const float alpha_root = p.real(roughness);
+    const float stretch = p.real(anisotropy);
+    const EnergyPlace place = EnergyPlace::of(alpha_root, stretch, compensate != 0);
+    return {metal, Ggx::of(alpha_root, stretch), {place, separable != 0}};
   }
 };
 

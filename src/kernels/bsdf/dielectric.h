@@ -52,7 +52,7 @@ struct DielectricAt {
 
 struct Dielectric {
   SpectrumRef ior;
-  float roughness, anisotropy;
+  RealRef roughness, anisotropy;
   uint32_t compensate;
 
   static constexpr const char* name = "dielectric";
@@ -99,12 +99,14 @@ struct Dielectric {
         anisotropy_param(ACCURAY_OFFSET_OF(Dielectric, anisotropy)),
         compensate_param(ACCURAY_OFFSET_OF(Dielectric, compensate)));
   }
-  bool oriented() const { return anisotropy > 0.0f; }
+  bool oriented() const { return anisotropy.texture != none || anisotropy.value > 0.0f; }
   DielectricAt at(const ShadingPoint& p) const {
     const Spectrum relative = p.spectrum(ior) / p.exterior;
     const bool disperses = relative[0] != relative[1] || relative[0] != relative[2] || relative[0] != relative[3];
-    const EnergyPlace place = EnergyPlace::of(roughness, anisotropy, compensate != 0);
-    return {{relative, disperses, p.wl.hero_only, Ggx::of(roughness, anisotropy), place}};
+    const float alpha_root = p.real(roughness);
+    const float stretch = p.real(anisotropy);
+    const EnergyPlace place = EnergyPlace::of(alpha_root, stretch, compensate != 0);
+    return {{relative, disperses, p.wl.hero_only, Ggx::of(alpha_root, stretch), place}};
   }
 };
 

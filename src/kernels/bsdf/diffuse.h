@@ -70,7 +70,7 @@ struct DiffuseAt {
 
 struct Diffuse {
   SpectrumRef reflectance;
-  float roughness;
+  RealRef roughness;
 
   static constexpr const char* name = "diffuse";
   static constexpr const char* doc =
@@ -97,10 +97,11 @@ struct Diffuse {
               .preset = "0",
               .low = 0,
               .high = 1,
+              .texturable = true,
               .animatable = true,
               .member = ACCURAY_OFFSET_OF(Diffuse, roughness)});
   }
-  DiffuseAt at(const ShadingPoint& p) const { return {p.spectrum(reflectance), roughness}; }
+  DiffuseAt at(const ShadingPoint& p) const { return {p.spectrum(reflectance), p.real(roughness)}; }
 };
 
 }  // namespace accuray

@@ -13,6 +13,7 @@ constexpr Param roughness_param(uint32_t member) {
       .preset = "0",
       .low = 0,
       .high = 1,
+      .texturable = true,
       .animatable = true,
       .member = member};
 }
@@ -25,6 +26,7 @@ constexpr Param anisotropy_param(uint32_t member) {
           .preset = "0",
           .low = 0,
           .high = 1,
+          .texturable = true,
           .animatable = true,
           .member = member};
 }

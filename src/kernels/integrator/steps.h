@@ -3,10 +3,8 @@
 
 #include "kernels/accel/accel.h"
 #include "kernels/bsdf/list.h"
-#include "kernels/integrator/bodies.h"
+#include "kernels/integrator/shading.h"
 #include "kernels/light/select.h"
-#include "kernels/texture/bump.h"
-#include "kernels/texture/normal_map.h"
 #include "kernels/texture/opacity.h"
 
 namespace accuray {
@@ -29,26 +27,6 @@ inline Spectrum light_weight(float pdf, const BsdfAt& bsdf, Vec3 wo, Vec3 wi) {
   } else {
     return lanes(mis_weight(pdf, bsdf.pdf(wo, wi)));
   }
-}
-
-// Where the BSDF of a hit reads its values, and the frame that its directions are in.
-inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& material, const Path& path,
-                                  const Surface& surface, uint32_t exterior) {
-  const Spectrum before =
-      material.interior == none ? lanes(1.0f) : exterior_ior(scene, material.interior, exterior, path.wl);
-  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before};
-  return {scene, path.wl, texture_point(scene, path.hit, surface), before};
-}
-inline Frame shading_frame(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
-                           const ShadingPoint& p, const Path& path) {
-  Vec3 normal = surface.shading;
-  if (material.normal_map != none) [[unlikely]]
-    normal = mapped_normal(scene, material, normal, p.where);
-  if (material.bump_map != none) [[unlikely]]
-    normal = bumped_normal(scene, material.bump_map, material.bump_height, path.hit, normal, p.where);
-  if (normal.x != surface.normal.x || normal.y != surface.normal.y || normal.z != surface.normal.z)
-    normal = facing_normal(surface.normal, normal, -path.ray.direction);
-  return material.oriented == 0 ? Frame::around(normal) : Frame::along(normal, p.where.dpdu);
 }
 
 // What decides about partly opaque surfaces at this vertex: one stream for the path, one for light that it asks for.
