@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/geometry/surface.h"
+#include "kernels/math/functions.h"
 
 namespace accuray {
 
