@@ -3,35 +3,16 @@
 from __future__ import annotations
 
 import fcntl
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+from tests.commands import REPOSITORY, run
+
 BUILD = REPOSITORY / "build" / "cpp-tests"
 FILES = sorted(path.relative_to(REPOSITORY).as_posix() for path in (REPOSITORY / "src").rglob("*_test.cpp"))
 SUITE = re.compile(r"^(?:TYPED_)?TEST(?:_[FP])?\(\s*(\w+)\s*,", re.MULTILINE)
-
-
-def run(*command: str) -> str:
-    """Runs a command in the repository, the tools of this Python's environment first; fails with its output."""
-    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
-    result = subprocess.run(
-        command,
-        cwd=REPOSITORY,
-        env=os.environ | {"PATH": path},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        check=False,
-    )
-    if result.returncode != 0:
-        pytest.fail(f"{' '.join(command)}\n{result.stdout}", pytrace=False)
-    return result.stdout
 
 
 @pytest.fixture(scope="session")

@@ -5,22 +5,16 @@
 #include <utility>
 
 #include "kernels/math/functions.h"
+#include "lower/double3.h"
 
 namespace accuray {
 
 namespace {
 
-using Vec3d = std::array<double, 3>;
-
-double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3d difference(const Vec3d& a, const Vec3d& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3d crossed(const Vec3d& a, const Vec3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vec3d unit(const Vec3d& v, const char* key, const char* problem) {
-  const double length = std::sqrt(dot(v, v));
-  if (!(length > 0.0) || !std::isfinite(length)) throw BadParameter(key, problem);
-  return {v[0] / length, v[1] / length, v[2] / length};
+Double3 unit(const Double3& v, const char* key, const char* problem) {
+  const double size = length(v);
+  if (!(size > 0.0) || !std::isfinite(size)) throw BadParameter(key, problem);
+  return {v[0] / size, v[1] / size, v[2] / size};
 }
 
 std::string metres(double value) {
@@ -31,7 +25,7 @@ std::string metres(double value) {
 
 // The camera's axes; `distance` is that of look_at.
 struct Axes {
-  Vec3d position, right, up, backward;
+  Double3 position, right, up, backward;
   double distance;
 
   Pose pose() const { return {to_vec3(position), to_vec3(right), to_vec3(up), to_vec3(backward)}; }
@@ -42,8 +36,8 @@ Axes axes_of(const Values& values) {
   const auto away = difference(position, vec_of(values, "look_at"));
   const auto backward = unit(away, "look_at", "is where the camera stands: allowed is any point but its position");
   constexpr const char* no_up = "is no direction across the view: allowed is any that is not along it, and not 0";
-  const auto right = unit(crossed(unit(vec_of(values, "up"), "up", no_up), backward), "up", no_up);
-  return {position, right, crossed(backward, right), backward, std::sqrt(dot(away, away))};
+  const auto right = unit(cross(unit(vec_of(values, "up"), "up", no_up), backward), "up", no_up);
+  return {position, right, cross(backward, right), backward, length(away)};
 }
 
 double tangent(double angle) {

@@ -118,7 +118,7 @@ MeshData cylinder(const Values& values) {
   const auto end = vec_of(values, "end");
   const double radius = number_of(values, "radius");
   const bool smooth = is_smooth(values);
-  const Double3 along = combined(1.0, end, -1.0, start);
+  const Double3 along = difference(end, start);
   if (!(length(along) > 0.0)) throw std::invalid_argument("start and end are the same point: they must differ");
   const Axes axes = axes_along(along, "the line from start to end");
   const auto angles = turns(count_of(values, "segments"));

@@ -12,17 +12,15 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 import sysconfig
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from tests.commands import REPOSITORY, run
 from tests.kernels.nvrtc import compile_kernel
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 BUILD = REPOSITORY / "build" / "overlay"
 HEADER = Path(__file__).parent / "overlay" / "kernels" / "bsdf" / "retroreflector.h"
 LIST = "kernels/bsdf/list.h"
@@ -38,24 +36,6 @@ def overlay() -> dict[str, str]:
     text, words = re.subn(r"(using Bsdfs = TypeList<[^>]*)>", rf"\1, {WORD}>", text)
     assert (lines, words) == (1, 1), f"{LIST} no longer looks as this test knows it"
     return {f"kernels/bsdf/{HEADER.name}": HEADER.read_text(encoding="utf-8"), LIST: text}
-
-
-def run(*command: str, **more: Any) -> str:
-    """Runs a command in the repository, the tools of this Python's environment first; fails with its output."""
-    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
-    environment = os.environ | {"PATH": path} | more.pop("env", {})
-    result = subprocess.run(
-        command,
-        cwd=REPOSITORY,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        check=False,
-    )
-    if result.returncode != 0:
-        pytest.fail(f"{' '.join(command)}\n{result.stdout}", pytrace=False)
-    return result.stdout
 
 
 def write_if_changed(path: Path, text: str) -> None:

@@ -59,6 +59,13 @@ struct BsdfSample {
   float eta_scale;  // (eta_i / eta_o)^2 of a refraction, else 1: takes radiance scaling out of the roulette
 };
 
+// Chance with which something that has another share in each lane is chosen for all of them: the mean while they go
+// together, which is the balance heuristic over which of them might have been the hero (Wilkie et al. 2014, eq. 9).
+inline float chance_for_all(Spectrum share, bool hero_decides) { return hero_decides ? share[0] : 0.25f * sum(share); }
+
+inline BsdfSample mirror_sample(Vec3 wo, Spectrum weight) {
+  return {{-wo.x, -wo.y, wo.z}, weight, 0.0f, lobe_specular, 1.0f};
+}
 inline BsdfSample no_sample() { return {{0, 0, 1}, lanes(0.0f), 0.0f, lobe_none, 1.0f}; }
 
 }  // namespace accuray

@@ -25,7 +25,7 @@ struct ConductorAt {
 
   BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
     if (wo.z == 0.0f) return no_sample();
-    if (is_delta()) return {{-wo.x, -wo.y, wo.z}, metal.reflectance(abs(wo.z)), 0.0f, lobe_specular, 1.0f};
+    if (is_delta()) return mirror_sample(wo, metal.reflectance(abs(wo.z)));
     const Vec3 above = {wo.x, wo.y, abs(wo.z)};
     Vec3 wi;
     if (u_lobe < loss.at(above.z)) {
@@ -138,15 +138,13 @@ struct Conductor {
               .member = ACCURAY_OFFSET_OF(Conductor, separable)},
         compensate_param(ACCURAY_OFFSET_OF(Conductor, compensate)));
   }
-  bool oriented() const { return anisotropy.texture != none || anisotropy.value > 0.0f; }
+  bool oriented() const { return is_stretched(anisotropy); }
   ConductorAt at(const ShadingPoint& p) const {
     const MetalAt metal = reflectance.index == none
                               ? MetalAt::of_index(p.spectrum(eta), p.spectrum(k))
                               : MetalAt::of_colours(p.spectrum(reflectance), p.spectrum(edge_tint));
-    const float alpha_root = p.real(roughness);
-    const float stretch = p.real(anisotropy);
-    const EnergyPlace place = EnergyPlace::of(alpha_root, stretch, compensate != 0);
-    return {metal, Ggx::of(alpha_root, stretch), {place, separable != 0}};
+    const FacetsAt at = FacetsAt::of(p, roughness, anisotropy, compensate);
+    return {metal, at.facets, {at.place, separable != 0}};
   }
 };
 

@@ -34,10 +34,8 @@ struct DielectricAt {
     const float cos_o = abs(wo.z);
     const Spectrum eta = wo.z > 0.0f ? rough.ior : 1.0f / rough.ior;
     const Spectrum reflectance = fresnel_dielectric(cos_o, eta);
-    const float chance = rough.hero_only ? reflectance[0] : 0.25f * sum(reflectance);
-    if (u_lobe < chance) {
-      return {{-wo.x, -wo.y, wo.z}, reflectance / chance, 0.0f, lobe_specular, 1.0f};
-    }
+    const float chance = chance_for_all(reflectance, rough.hero_only);
+    if (u_lobe < chance) return mirror_sample(wo, reflectance / chance);
     // Snell's law for the hero; without dispersion its direction is everyone's.
     const float e = eta[0];
     const float sin2_t = (1.0f - cos_o * cos_o) / (e * e);
@@ -99,14 +97,12 @@ struct Dielectric {
         anisotropy_param(ACCURAY_OFFSET_OF(Dielectric, anisotropy)),
         compensate_param(ACCURAY_OFFSET_OF(Dielectric, compensate)));
   }
-  bool oriented() const { return anisotropy.texture != none || anisotropy.value > 0.0f; }
+  bool oriented() const { return is_stretched(anisotropy); }
   DielectricAt at(const ShadingPoint& p) const {
     const Spectrum relative = p.spectrum(ior) / p.exterior;
     const bool disperses = relative[0] != relative[1] || relative[0] != relative[2] || relative[0] != relative[3];
-    const float alpha_root = p.real(roughness);
-    const float stretch = p.real(anisotropy);
-    const EnergyPlace place = EnergyPlace::of(alpha_root, stretch, compensate != 0);
-    return {{relative, disperses, p.wl.hero_only, Ggx::of(alpha_root, stretch), place}};
+    const FacetsAt at = FacetsAt::of(p, roughness, anisotropy, compensate);
+    return {{relative, disperses, p.wl.hero_only, at.facets, at.place}};
   }
 };
 

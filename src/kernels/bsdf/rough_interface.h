@@ -72,7 +72,7 @@ struct RoughInterface {
   float across(int k, bool above) const { return above ? ior[k] : 1.0f / ior[k]; }
   Spectrum across(bool above) const { return above ? ior : 1.0f / ior; }
   // What decides for all lanes: their mean while they go together.
-  float decision(Spectrum s) const { return !disperses || hero_only ? s[0] : 0.25f * sum(s); }
+  float decision(Spectrum s) const { return chance_for_all(s, !disperses || hero_only); }
   // Calls fn for each lane that differs and carries something.
   template <class Fn>
   Spectrum by_lane(Fn&& fn) const {

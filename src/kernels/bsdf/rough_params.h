@@ -1,9 +1,23 @@
-// The parameters that rough surfaces of facets share.
+// The parameters that rough surfaces of facets share, and what they are at a hit.
 #pragma once
 
-#include "kernels/schema.h"
+#include "kernels/bsdf/bsdf.h"
+#include "kernels/bsdf/energy.h"
 
 namespace accuray {
+
+inline bool is_stretched(const RealRef& anisotropy) { return anisotropy.texture != none || anisotropy.value > 0.0f; }
+
+struct FacetsAt {
+  Ggx facets;
+  EnergyPlace place;
+
+  static FacetsAt of(const ShadingPoint& p, const RealRef& roughness, const RealRef& anisotropy, uint32_t compensate) {
+    const float rough = p.real(roughness);
+    const float stretch = p.real(anisotropy);
+    return {Ggx::of(rough, stretch), EnergyPlace::of(rough, stretch, compensate != 0)};
+  }
+};
 
 constexpr Param roughness_param(uint32_t member) {
   return {

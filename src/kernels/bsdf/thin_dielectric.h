@@ -23,8 +23,8 @@ struct ThinDielectricAt {
     if (wo.z == 0.0f) return no_sample();
     const Spectrum r = fresnel_dielectric(abs(wo.z), ior);
     const Spectrum reflectance = 2.0f * r / (1.0f + r);
-    const float chance = hero_only ? reflectance[0] : 0.25f * sum(reflectance);
-    if (u_lobe < chance) return {{-wo.x, -wo.y, wo.z}, reflectance / chance, 0.0f, lobe_specular, 1.0f};
+    const float chance = chance_for_all(reflectance, hero_only);
+    if (u_lobe < chance) return mirror_sample(wo, reflectance / chance);
     const Spectrum weight = (1.0f - reflectance) / (1.0f - chance);
     return {-wo, weight, 0.0f, lobe_specular | lobe_transmission, 1.0f};
   }

@@ -14,8 +14,7 @@ struct PinholeIntrinsics {
   static constexpr const char* name = "pinhole_intrinsics";
   static constexpr const char* doc =
       "A calibrated pinhole: K and the distortion of OpenCV. Pixel (0, 0) has its middle at u = v = 0. Black with "
-      "alpha "
-      "0 where the distortion leaves nothing to see.";
+      "alpha 0 where the distortion leaves nothing to see.";
   static constexpr auto params() {
     return param_list(
         pixels("fx", "Focal length in pixels, across.", 1e-3, true),

@@ -37,7 +37,10 @@ inline void cross_surface(const MaterialRecord& material, const Surface& surface
 // What lies on the far side of the surface's front; none: vacuum, or the material bounds no body.
 inline uint32_t exterior_at(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
                             const Path& path) {
-  return material.interior == none ? none : exterior_of(scene, path.inside, material.interior, leaves(path, surface));
+  if (material.interior == none) return none;
+  Interiors inside = path.inside;
+  if (leaves(path, surface)) inside.leave(material.interior);
+  return inside.filling(scene);
 }
 
 // Step pass: goes straight on where another body hides the surface; true if it does. sample_light() finds nothing

@@ -17,12 +17,6 @@ struct Interiors {
   uint32_t count = 0;
   uint32_t entered[most_interiors] = {};
 
-  bool contains(uint32_t interior) const {
-    for (uint32_t i = 0; i < count; ++i) {
-      if (entered[i] == interior) return true;
-    }
-    return false;
-  }
   void remove_at(uint32_t position) {
     for (uint32_t i = position; i + 1 < count; ++i) entered[i] = entered[i + 1];
     --count;
@@ -47,12 +41,6 @@ struct Interiors {
     return best;
   }
 };
-
-// What lies on the other side of a surface that bounds `interior`, for a path on either side of it.
-inline uint32_t exterior_of(const SceneView& scene, Interiors inside, uint32_t interior, bool leaving) {
-  if (leaving) inside.leave(interior);
-  return inside.filling(scene);
-}
 
 // Whether the surface lies inside something of higher priority. Without a priority of its own it is always real.
 inline bool is_hidden(const SceneView& scene, uint32_t interior, uint32_t exterior) {

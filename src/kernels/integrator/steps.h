@@ -88,16 +88,16 @@ template <Accel A>
 inline float visible_share(const SceneView& scene, const A& accel, const Path& path, const Surface& surface,
                            const LightSample& light) {
   const Vec3 from = offset_origin(surface.point, surface.error, surface.normal, light.wi);
-  const float time = path.ray.time;
-  const bool endless = light.distance == infinity;
-  if (scene.root->any_opacity != 0) [[unlikely]] {
-    const Vec3 to = endless ? from : offset_origin(light.point, light.error, light.normal, -light.wi);
-    const Ray ray = {from, endless ? light.wi : to - from, endless ? infinity : one_minus_epsilon, time};
-    return opaque_transmittance(scene, accel, ray, to, opacity_key(path, OpacityStream::light));
+  Vec3 to = from;
+  Ray ray = {from, light.wi, infinity, path.ray.time};
+  if (light.distance != infinity) {
+    to = offset_origin(light.point, light.error, light.normal, -light.wi);
+    ray.direction = to - from;
+    ray.far = one_minus_epsilon;
   }
-  if (endless) return accel.transmittance({from, light.wi, infinity, time});
-  const Vec3 to = offset_origin(light.point, light.error, light.normal, -light.wi);
-  return accel.transmittance({from, to - from, one_minus_epsilon, time});
+  if (scene.root->any_opacity != 0) [[unlikely]]
+    return opaque_transmittance(scene, accel, ray, to, opacity_key(path, OpacityStream::light));
+  return accel.transmittance(ray);
 }
 
 // Share of a light sample that the body around it lets through, on whichever side of the surface it comes from.
