@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from accuray.scene import schema as schemas
+from accuray.scene.composition import check_parts
 from accuray.scene.errors import Document, Source, Where
 from accuray.scene.exposure import resolve_exposure
 from accuray.scene.identity import scene_identity
@@ -91,6 +92,7 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     lights = _named("lights", schema.family("light").types, scope)
     shapes = _named("shapes", schema.family("shape").types, scope)
     check_shapes(shapes, schema, top.child("shapes"))
+    check_parts(materials, schema, top.child("materials"))
     settle_colour_spaces(textures, materials, top.child("textures"))
     check_opacity(materials, top)
     check_coordinates(textures, materials, shapes, schema, top)

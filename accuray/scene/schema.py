@@ -89,10 +89,10 @@ class Schema:
         return self.families[name]
 
     def material_types(self) -> dict[str, Type]:
-        """BSDFs with the header that all materials share."""
+        """BSDFs and compositions with the header that all materials share."""
         header = self.family("material").common
-        bsdfs = self.family("bsdf").types
-        return {name: Type(name, bsdf.doc, (*bsdf.params, *header), bsdf.keeps) for name, bsdf in bsdfs.items()}
+        types = {**self.family("bsdf").types, **self.family("composition").types}
+        return {name: Type(name, type_.doc, (*type_.params, *header), type_.keeps) for name, type_ in types.items()}
 
 
 def parse(tables: dict[str, Any]) -> Schema:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from accuray.scene.composition import all_parts
 from accuray.scene.errors import Where
 from accuray.scene.plain import choice, quantity
 from accuray.scene.schema import Param, Schema
@@ -100,18 +101,19 @@ def check_coordinates(textures: Objects, materials: Objects, shapes: Objects, sc
     """A texture that is laid out by texture coordinates needs shapes that have them. Raises SceneError."""
     types = schema.family("texture").types
     laid_out = {
-        name: (key, use.texture)
-        for name, table in materials.items()
-        for key, use in uses_of(table)
+        name: (part, key, use.texture)
+        for name in materials
+        for part in all_parts(materials, name, schema)
+        for key, use in uses_of(materials[part])
         if types[textures[use.texture]["type"]].reads_uv
     }
     for name, shape in shapes.items():
         for member in shape.get("of") or (name,):
             material = shape["material"] or shapes[member]["material"]
             if material in laid_out and shapes[member]["type"] == "mesh" and shapes[member]["uvs"] is None:
-                key, texture = laid_out[material]
+                part, key, texture = laid_out[material]
                 via = f' (shown by "{name}")' if member != name else ""
-                user = f"materials.{material}.{key}"
+                user = f"materials.{part}.{key}"
                 raise where.child("shapes", member).error(
                     f'has no texture coordinates{via}, which the texture "{texture}" of {user} needs',
                     allowed="a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)",

@@ -150,6 +150,13 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
           },
           "type"_a, "values"_a, "header"_a, "emission"_a.none())
       .def(
+          "add_composition",
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, const nb::dict& header,
+             std::optional<SpectrumRef> emission) {
+            return b.add_composition(type, to_values(values), to_values(header), emission);
+          },
+          "type"_a, "values"_a, "header"_a, "emission"_a.none())
+      .def(
           "add_mesh",
           [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
              const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,

@@ -1,5 +1,6 @@
 // The parameter tables of every type of every list, as Python sees them.
 #include "bindings/bindings.h"
+#include "kernels/bsdf/composition.h"
 #include "kernels/bsdf/list.h"
 #include "kernels/camera/list.h"
 #include "kernels/film/filter.h"
@@ -95,6 +96,7 @@ nb::dict family(TypeList<Ts...>, nb::list common) {
 nb::dict tables() {
   nb::dict families;
   families["bsdf"] = family(Bsdfs{}, nb::list());
+  families["composition"] = family(Compositions{}, nb::list());
   families["texture"] = family(Textures{}, nb::list());
   families["light"] = family(NamedLights{}, nb::list());
   families["shape"] = family(Shapes{}, params_of<ShapeCommon>());

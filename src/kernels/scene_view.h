@@ -12,7 +12,7 @@
 
 namespace accuray {
 
-constexpr uint32_t block_version = 3;
+constexpr uint32_t block_version = 4;
 constexpr uint32_t lambda_guide_size = 512;
 
 template <class T>
@@ -46,6 +46,7 @@ struct RealRef {
 
 struct MaterialRecord {
   Tagged bsdf;
+  uint32_t composed;     // `bsdf` is one of Compositions, whose parts are the materials to shade with
   uint32_t interior;     // none: not the surface of a dielectric body
   SpectrumRef emission;  // none: does not emit
   uint32_t emits_both_sides;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "kernels/bsdf/composition.h"
 #include "kernels/bsdf/list.h"
 #include "kernels/texture/opacity.h"
 
@@ -69,31 +70,64 @@ bool SceneBuilder::is_textured(const Value& value) const {
   return std::holds_alternative<TexturedReal>(value) || (spectrum != nullptr && spectra_.is_textured(*spectrum));
 }
 
-uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, const Values& header,
-                                    std::optional<SpectrumRef> emission) {
+bool SceneBuilder::any_textured(const Values& values) const {
+  return std::any_of(values.begin(), values.end(), [&](const auto& named) { return is_textured(named.second); });
+}
+
+MaterialRecord SceneBuilder::material_with(const Values& header, std::optional<SpectrumRef> emission) {
   MaterialRecord material{};
-  material.bsdf = lower_type(Bsdfs{}, type, values, pool_);
-  material.interior = add_interior(values);
+  material.interior = none;
+  material.normal_map = none;
+  material.bump_map = none;
   material.emission = {emission && !spectra_.is_zero(*emission) ? emission->index : none};
   material.emits_both_sides = number_of(header, "emission_sides") != 0.0 ? 1u : 0u;
   material.opacity = real_ref(param_named<MaterialCommon>("opacity"), value_of(header, "opacity"));
   if (!is_always_opaque(material)) root_.any_opacity = 1;
-  material.normal_map = none;
+  return material;
+}
+
+bool SceneBuilder::bounds_body(uint32_t material) const {
+  const MaterialRecord& record = materials_.at(material);
+  if (record.composed == 0) return record.interior != none;
+  const uint32_t* parameters = pool_.words().data() + record.bsdf.offset;
+  return dispatch(Compositions{}, record.bsdf.tag, [&](auto listed) {
+    const auto parts = reinterpret_cast<const typename decltype(listed)::type*>(parameters)->parts();
+    return bounds_body(parts.first) || bounds_body(parts.second);
+  });
+}
+
+uint32_t SceneBuilder::add_composition(std::string_view type, Values values, const Values& header,
+                                       std::optional<SpectrumRef> emission) {
+  if (type == TwoSided::name && !values.contains("back")) values.emplace("back", value_of(values, "front"));
+  MaterialRecord material = material_with(header, emission);
+  material.composed = 1;
+  material.bsdf = lower_type(Compositions{}, type, values, pool_);
+  material.reads_texture_point = any_textured(values) || any_textured(header) ? 1u : 0u;
+  for (const char* side : {"front", "back"}) {
+    if (values.contains(side) && bounds_body(static_cast<uint32_t>(number_of(values, side)))) {
+      throw BadParameter(side, "is the surface of a body: allowed are materials that let nothing in");
+    }
+  }
+  materials_.push_back(material);
+  return static_cast<uint32_t>(materials_.size() - 1);
+}
+
+uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, const Values& header,
+                                    std::optional<SpectrumRef> emission) {
+  MaterialRecord material = material_with(header, emission);
+  material.bsdf = lower_type(Bsdfs{}, type, values, pool_);
+  material.interior = add_interior(values);
   if (header.contains("normal_map")) {
     const auto& map = std::get<TexturedReal>(value_of(header, "normal_map"));
     material.normal_map = map.texture;
     material.normal_strength = static_cast<float>(map.scale);
     material.normal_map_down = number_of(header, "normal_map_convention") != 0.0 ? 1u : 0u;
   }
-  material.bump_map = none;
   if (header.contains("bump_map")) {
     const auto& map = std::get<TexturedReal>(value_of(header, "bump_map"));
     material.bump_map = map.texture;
     material.bump_height = static_cast<float>(map.scale * number_of(header, "bump_height"));
   }
-  const auto any_textured = [&](const Values& some) {
-    return std::any_of(some.begin(), some.end(), [&](const auto& named) { return is_textured(named.second); });
-  };
   const bool oriented = dispatch(Bsdfs{}, material.bsdf.tag, [&](auto listed) {
     using Bsdf = typename decltype(listed)::type;
     if constexpr (requires(const Bsdf& b) { b.oriented(); }) {

@@ -39,6 +39,9 @@ class SceneBuilder {
   // `header`: the parameters of MaterialCommon but for the emission.
   uint32_t add_material(std::string_view type, const Values& values, const Values& header,
                         std::optional<SpectrumRef> emission);
+  // The parts must have been added; of `header` only the opacity counts.
+  uint32_t add_composition(std::string_view type, Values values, const Values& header,
+                           std::optional<SpectrumRef> emission);
   // Each returns the geometry's number. `prototype`: rendered through instances only; these come after all others.
   uint32_t add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype);
   uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,
@@ -56,6 +59,9 @@ class SceneBuilder {
 
  private:
   bool is_textured(const Value& value) const;
+  bool any_textured(const Values& values) const;
+  bool bounds_body(uint32_t material) const;
+  MaterialRecord material_with(const Values& header, std::optional<SpectrumRef> emission);
   uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds, bool prototype);
   // The lights of an instance's copy of a geometry, or none.
   uint32_t copied_lights(const Matrix& matrix, const GeometryRecord& geometry, const MaterialRecord& material);

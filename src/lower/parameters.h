@@ -73,6 +73,8 @@ inline void write_member(const Param& param, const Value& value, uint8_t* target
     case Kind::real:
       if (param.texturable) return put(real_ref(param, value));
       return put(static_cast<float>(std::get<double>(value)));
+    case Kind::reference:
+      return put(static_cast<uint32_t>(std::get<double>(value)));
     case Kind::integer:
       return put(static_cast<int32_t>(std::get<double>(value)));
     case Kind::boolean:

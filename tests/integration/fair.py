@@ -101,6 +101,7 @@ FAIR = {
     "furnace": Fair("as it is: its light comes from everywhere"),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "rough-metals": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
+    "specularity": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "sphere-cavity": Fair("as it is: `reference` sums its point light plainly"),
     "spheres": Fair(
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)

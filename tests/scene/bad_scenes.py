@@ -155,6 +155,19 @@ NAMES = [
     scene(
         "material-missing", '[shapes.s]\ntype = "sphere"\n', "scene.toml:2: shapes.s", "has no material", "material ="
     ),
+    scene(
+        "material-of-itself",
+        '[materials.m]\ntype = "mix"\nfirst = "m"\nsecond = "m"\n',
+        "scene.toml:4: materials.m.first",
+        "part of itself: m -> m",
+    ),
+    scene(
+        "part-that-emits",
+        '[materials.a]\ntype = "diffuse"\nemission = 1\n[materials.m]\ntype = "two_sided"\nfront = "a"\n',
+        "scene.toml:4: materials.a.emission",
+        'part of "m" (front)',
+        "allowed",
+    ),
     scene("material-number", '[shapes.s]\ntype = "sphere"\nmaterial = 3\n', "scene.toml:4: shapes.s.material: 3"),
     scene("instance-of-none", '[shapes.i]\ntype = "instance"\nof = "x"\n', "scene.toml:4: shapes.i.of", '"x"', "i"),
     scene("instance-lacks-of", '[shapes.i]\ntype = "instance"\n', "scene.toml:2: shapes.i", "`of`"),

@@ -101,18 +101,16 @@ def scene_with(section: str, type_: Type, param: Param, value: Any) -> dict[str,
         return {section: {param.name: value}}
     needed = {} if param.group else NEEDED.get(type_.name, {})
     needed |= {p.name: 1000.0 for p in type_.params if p.required and p.kind == "float"}
-    table = {"type": type_.name, **needed, param.name: value}
+    parts = {p.name: "part" for p in type_.params if p.required and p.kind == "reference" and section == "materials"}
+    table = {"type": type_.name, **needed, **parts, param.name: value}
     if section == "filter":
         return {"film": {"filter": table}}
     if section in ("camera", "integrator"):
         return {section: table}
     if section == "shapes":
         table["material"] = "m"
-    return (
-        {"materials": {"m": {"type": "diffuse"}}, section: {"x": table}}
-        if section == "shapes"
-        else {section: {"x": table}}
-    )
+        return {"materials": {"m": {"type": "diffuse"}}, section: {"x": table}}
+    return {section: {"x": table, **({"part": {"type": "diffuse"}} if parts else {})}}
 
 
 @pytest.mark.parametrize(("section", "type_", "param"), numeric_fields())

@@ -60,8 +60,9 @@ struct PathTracing {
   // Step shade_surface: emission, direct light, and the direction in which the path goes on.
   template <Accel A>
   void shade_surface(const SceneView& scene, const A& accel, Path& path) const {
-    const Surface surface = surface_at(scene, path.ray, path.hit);
-    const MaterialRecord& material = scene.materials[surface.material];
+    Surface surface = surface_at(scene, path.ray, path.hit);
+    const Part part = part_at(scene, surface, path);
+    const MaterialRecord& material = scene.materials[part.material];
     travel(scene, material, surface, path);
     const uint32_t exterior = exterior_at(scene, material, surface, path);
     if (pass_hidden(scene, material, surface, exterior, path)) return;
@@ -77,6 +78,8 @@ struct PathTracing {
     }
     path.alive = may_scatter(path);
     if (!path.alive) return;
+    if (part.turned) [[unlikely]]
+      turn(surface);
 
     // The sample's numbers for this vertex; the second set is drawn where something needs it.
     const f32x4 u_direction = path.sampler.draw(direction_set(path));

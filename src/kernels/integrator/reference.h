@@ -33,14 +33,16 @@ struct Reference {
         shade_miss(scene, Strategy::bsdf, path);
         return;
       }
-      const Surface surface = surface_at(scene, path.ray, path.hit);
-      const MaterialRecord& material = scene.materials[surface.material];
+      Surface surface = surface_at(scene, path.ray, path.hit);
+      const Part part = part_at(scene, surface, path);
+      const MaterialRecord& material = scene.materials[part.material];
       travel(scene, material, surface, path);
       const uint32_t exterior = exterior_at(scene, material, surface, path);
       if (pass_hidden(scene, material, surface, exterior, path)) continue;
       const Vec3 toward_viewer = -path.ray.direction;
       if (surface.light != none) path.radiance += path.throughput * emitted(scene, surface, toward_viewer, path.wl);
       if (max_depth >= 0 && path.depth >= static_cast<uint32_t>(max_depth)) return;
+      if (part.turned) turn(surface);
       const f32x4 u = path.sampler.draw(direction_set(path));
       const f32x4 u_decision = path.sampler.draw(decision_set(path));
       const ShadingPoint point = shading_point(scene, material, path, surface, exterior);

@@ -1,7 +1,7 @@
 // Where the BSDF of a hit reads its values, and the frame that its directions are in.
 #pragma once
 
-#include "kernels/integrator/bodies.h"
+#include "kernels/integrator/parts.h"
 #include "kernels/texture/bump.h"
 #include "kernels/texture/normal_map.h"
 

@@ -1,0 +1,59 @@
+"""Materials that are made of others: what their parts may be, and in which order they are built."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from accuray.scene.errors import Where
+from accuray.scene.schema import Schema
+
+MOST_PARTS = 8
+"""Materials that one composed material may end in, as the kernels allow."""
+
+MAPS = ("normal_map", "normal_map_convention", "bump_map", "bump_height")
+"""What a composed material gives to those of its parts that have no maps of their own."""
+
+Objects = dict[str, dict[str, Any]]
+
+
+def parts_of(material: dict[str, Any], schema: Schema) -> Iterator[tuple[str, str]]:
+    """The materials that one refers to, by the parameter that does."""
+    for param in schema.material_types()[material["type"]].params:
+        if param.kind == "reference" and param.role == "material" and material[param.name] is not None:
+            yield param.name, material[param.name]
+
+
+def all_parts(materials: Objects, name: str, schema: Schema) -> Iterator[str]:
+    """The material and all that it is made of, the innermost first; one that is used twice comes twice."""
+    for _, part in parts_of(materials[name], schema):
+        yield from all_parts(materials, part, schema)
+    yield name
+
+
+def check_parts(materials: Objects, schema: Schema, where: Where) -> None:
+    """Raises SceneError for a material that contains itself, one of too many parts, and parts that cannot be such."""
+    for name in materials:
+        _count(materials, name, (), schema, where)
+    for name, material in materials.items():
+        for key, part in parts_of(material, schema):
+            for header, neutral in (("emission", None), ("opacity", 1.0)):
+                if materials[part][header] != neutral:
+                    raise where.child(part, header).error(
+                        f'cannot be given to a part of "{name}" ({key})', allowed=f'{header} of "{name}" as a whole'
+                    )
+
+
+def _count(materials: Objects, name: str, above: tuple[str, ...], schema: Schema, where: Where) -> int:
+    """Materials without parts that a material ends in."""
+    count = 0
+    for key, part in parts_of(materials[name], schema):
+        if part == name or part in above:
+            chain = " -> ".join((*above, name, part))
+            raise where.child(name, key).error(f"makes the material a part of itself: {chain}")
+        if len(above) + 1 >= MOST_PARTS:
+            raise where.child(name, key).error("nests materials too deeply", allowed=f"at most {MOST_PARTS} levels")
+        count += _count(materials, part, (*above, name), schema, where)
+    if count > MOST_PARTS:
+        raise where.child(name).error(f"is made of {count} materials", allowed=f"at most {MOST_PARTS}")
+    return max(count, 1)
