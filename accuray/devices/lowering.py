@@ -15,6 +15,7 @@ from accuray import data
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
+from accuray.scene.materials import in_order
 from accuray.scene.spectrum import interpolate
 from accuray.scene.textures import CHANNELS, TextureUse
 
@@ -85,8 +86,8 @@ class _Lowering:
         builder, film = self.builder, self.scene.film
         for name, texture in self.scene.textures.items():
             self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        for name, material in self.scene.materials.items():
-            self._guard(f"materials.{name}", partial(self._add_material, name, material))
+        for name in in_order(self.scene.materials, schemas.current()):
+            self._guard(f"materials.{name}", partial(self._add_material, name, self.scene.materials[name]))
         self._add_shapes()
         for name, light in self.scene.lights.items():
             self._guard(f"lights.{name}", partial(self._add_light, light))
@@ -158,7 +159,8 @@ class _Lowering:
         header = self._values_of(schemas.current().family("material").common, material)
         emission = header.pop("emission", None)
         values = self._values("bsdf", material)
-        self.materials[name] = self.builder.add_material(material["type"], values, header, emission)
+        base = self.materials.get(material.get("base", ""))
+        self.materials[name] = self.builder.add_material(material["type"], values, header, emission, base)
 
     def _add_shapes(self) -> None:
         """First what the scene shows itself, then the prototypes, group by group, with their instances."""

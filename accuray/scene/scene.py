@@ -13,6 +13,7 @@ from accuray.scene import schema as schemas
 from accuray.scene.errors import Document, Source, Where
 from accuray.scene.exposure import resolve_exposure
 from accuray.scene.identity import scene_identity
+from accuray.scene.materials import check_bases
 from accuray.scene.objects import expect_table, resolve_object, resolve_params
 from accuray.scene.paths import Confinement
 from accuray.scene.scope import Scope
@@ -93,6 +94,7 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     check_shapes(shapes, schema, top.child("shapes"))
     settle_colour_spaces(textures, materials, top.child("textures"))
     check_opacity(materials, top)
+    check_bases(materials, schema, top.child("materials"))
     check_coordinates(textures, materials, shapes, schema, top)
     _check_spectra(scope)
     camera = _single("camera", data, top.child("camera"), scope)

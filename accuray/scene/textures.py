@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from accuray.scene.errors import Where
+from accuray.scene.materials import bases_of
 from accuray.scene.plain import choice, quantity
 from accuray.scene.schema import Param, Schema
 from accuray.scene.scope import Scope
@@ -100,19 +101,19 @@ def check_coordinates(textures: Objects, materials: Objects, shapes: Objects, sc
     """A texture that is laid out by texture coordinates needs shapes that have them. Raises SceneError."""
     types = schema.family("texture").types
     laid_out = {
-        name: (key, use.texture)
-        for name, table in materials.items()
-        for key, use in uses_of(table)
+        name: (f"{part}.{key}", use.texture)
+        for name in materials
+        for part in (name, *(base for _, base in bases_of(name, materials, schema)))
+        for key, use in uses_of(materials[part])
         if types[textures[use.texture]["type"]].reads_uv
     }
     for name, shape in shapes.items():
         for member in shape.get("of") or (name,):
             material = shape["material"] or shapes[member]["material"]
             if material in laid_out and shapes[member]["type"] == "mesh" and shapes[member]["uvs"] is None:
-                key, texture = laid_out[material]
+                user, texture = laid_out[material]
                 via = f' (shown by "{name}")' if member != name else ""
-                user = f"materials.{material}.{key}"
                 raise where.child("shapes", member).error(
-                    f'has no texture coordinates{via}, which the texture "{texture}" of {user} needs',
+                    f'has no texture coordinates{via}, which the texture "{texture}" of materials.{user} needs',
                     allowed="a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)",
                 )

@@ -145,10 +145,10 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
       .def(
           "add_material",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, const nb::dict& header,
-             std::optional<SpectrumRef> emission) {
-            return b.add_material(type, to_values(values), to_values(header), emission);
+             std::optional<SpectrumRef> emission, std::optional<uint32_t> base) {
+            return b.add_material(type, to_values(values), to_values(header), emission, base);
           },
-          "type"_a, "values"_a, "header"_a, "emission"_a.none())
+          "type"_a, "values"_a, "header"_a, "emission"_a.none(), "base"_a = nb::none())
       .def(
           "add_mesh",
           [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,

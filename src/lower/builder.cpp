@@ -69,11 +69,18 @@ bool SceneBuilder::is_textured(const Value& value) const {
   return std::holds_alternative<TexturedReal>(value) || (spectrum != nullptr && spectra_.is_textured(*spectrum));
 }
 
-uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, const Values& header,
-                                    std::optional<SpectrumRef> emission) {
+uint32_t SceneBuilder::add_material(std::string_view type, Values values, const Values& header,
+                                    std::optional<SpectrumRef> emission, std::optional<uint32_t> base) {
+  MaterialRecord under{};
+  under.interior = none;
+  if (base) {
+    under = materials_.at(*base);
+    if (under.bsdf.tag >= Bases::size) throw BadParameter("base", "is coated itself: allowed is one layer");
+    values.emplace("base", under.bsdf);
+  }
   MaterialRecord material{};
   material.bsdf = lower_type(Bsdfs{}, type, values, pool_);
-  material.interior = add_interior(values);
+  material.interior = base ? under.interior : add_interior(values);
   material.emission = {emission && !spectra_.is_zero(*emission) ? emission->index : none};
   material.emits_both_sides = number_of(header, "emission_sides") != 0.0 ? 1u : 0u;
   material.opacity = real_ref(param_named<MaterialCommon>("opacity"), value_of(header, "opacity"));
@@ -102,8 +109,9 @@ uint32_t SceneBuilder::add_material(std::string_view type, const Values& values,
       return false;
     }
   });
-  material.oriented = oriented ? 1u : 0u;
-  material.reads_texture_point = oriented || any_textured(values) || any_textured(header) ? 1u : 0u;
+  material.oriented = oriented ? 1u : under.oriented;
+  const bool reads = material.oriented != 0 || any_textured(values) || any_textured(header);
+  material.reads_texture_point = reads ? 1u : under.reads_texture_point;
   materials_.push_back(material);
   return static_cast<uint32_t>(materials_.size() - 1);
 }

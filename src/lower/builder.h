@@ -36,9 +36,9 @@ class SceneBuilder {
   SpectrumPool& spectra() { return spectra_; }
   TexturePool& textures() { return textures_; }
 
-  // `header`: the parameters of MaterialCommon but for the emission.
-  uint32_t add_material(std::string_view type, const Values& values, const Values& header,
-                        std::optional<SpectrumRef> emission);
+  // `header`: the parameters of MaterialCommon but for the emission. `base`: the number of the material under a coat.
+  uint32_t add_material(std::string_view type, Values values, const Values& header, std::optional<SpectrumRef> emission,
+                        std::optional<uint32_t> base);
   // Each returns the geometry's number. `prototype`: rendered through instances only; these come after all others.
   uint32_t add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype);
   uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,

@@ -23,8 +23,8 @@ struct TexturedReal {
   double scale;
 };
 
-// A resolved value: number (also bool and the position of a choice), vector, spectrum, or textured number.
-using Value = std::variant<double, std::array<double, 3>, SpectrumRef, TexturedReal>;
+// A resolved value: number (also bool and the position of a choice), vector, spectrum, textured number, or BSDF.
+using Value = std::variant<double, std::array<double, 3>, SpectrumRef, TexturedReal, Tagged>;
 using Values = std::map<std::string, Value, std::less<>>;
 
 // What is wrong with the value of a parameter, and the parameter's name.
@@ -82,6 +82,8 @@ inline void write_member(const Param& param, const Value& value, uint8_t* target
       return put(to_vec3(std::get<std::array<double, 3>>(value)));
     case Kind::spectrum:
       return put(std::get<SpectrumRef>(value));
+    case Kind::reference:
+      return put(std::get<Tagged>(value));
     default:
       throw std::logic_error(std::string("parameter '") + param.name + "' has a member but no kind that fills it");
   }
