@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from accuray import data
+from accuray.devices.materials import MaterialLowering
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
-from accuray.scene.composition import MAPS, parts_of
 from accuray.scene.spectrum import interpolate
 from accuray.scene.textures import CHANNELS, TextureUse
 
@@ -79,7 +79,6 @@ class _Lowering:
         self._pictures: dict[tuple[str, tuple[int, ...], bytes], int] = {}
         self.textures: dict[str, int] = {}
         self.materials: dict[str, int] = {}
-        self._materials: dict[tuple[str, tuple[Any, ...]], int] = {}
         self.reports: dict[str, MeshReport] = dict(scene.mesh_reports)
 
     def block(self) -> Any:
@@ -87,8 +86,7 @@ class _Lowering:
         builder, film = self.builder, self.scene.film
         for name, texture in self.scene.textures.items():
             self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        for name in self.scene.materials:
-            self.materials[name] = self._material(name, {})
+        self.materials = MaterialLowering(self.scene.materials, builder, self._values_of, self._guard).numbers()
         self._add_shapes()
         for name, light in self.scene.lights.items():
             self._guard(f"lights.{name}", partial(self._add_light, light))
@@ -155,29 +153,6 @@ class _Lowering:
             return core.TexturedReal(texture, channel, use.scale)
         self._need_rgb_table()
         return self.builder.textured_reflectance(texture, use.scale)
-
-    def _material(self, name: str, maps: Values) -> int:
-        """The builder's number of a material; ``maps`` are those of the material that it is a part of."""
-        material = self.scene.materials[name]
-        if material["normal_map"] is None and material["bump_map"] is None:
-            material = {**material, **maps}
-        maps = {key: material[key] for key in MAPS}
-        key = (name, tuple(maps.values()))
-        if key not in self._materials:
-            parts = parts_of(material, schemas.current())
-            material = {**material, **{param: self._material(part, maps) for param, part in parts}}
-            self._materials[key] = self._guard(f"materials.{name}", partial(self._add_material, material))
-        return self._materials[key]
-
-    def _add_material(self, material: Values) -> int:
-        schema = schemas.current()
-        header = self._values_of(schema.family("material").common, material)
-        emission = header.pop("emission", None)
-        composed = material["type"] in schema.family("composition").types
-        values = self._values("composition" if composed else "bsdf", material)
-        add = self.builder.add_composition if composed else self.builder.add_material
-        number: int = add(material["type"], values, header, emission)
-        return number
 
     def _add_shapes(self) -> None:
         """First what the scene shows itself, then the prototypes, group by group, with their instances."""

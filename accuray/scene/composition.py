@@ -14,6 +14,12 @@ MOST_PARTS = 8
 MAPS = ("normal_map", "normal_map_convention", "bump_map", "bump_height")
 """What a composed material gives to those of its parts that have no maps of their own."""
 
+WHOLE = (("emission", None), ("opacity", 1.0))
+"""What only a whole material may have, and what it is otherwise."""
+
+MAPPED = (("normal_map", None), ("bump_map", None))
+"""The same of a material under a layer, whose maps bend both."""
+
 Objects = dict[str, dict[str, Any]]
 
 
@@ -36,8 +42,13 @@ def check_parts(materials: Objects, schema: Schema, where: Where) -> None:
     for name in materials:
         _count(materials, name, (), schema, where)
     for name, material in materials.items():
+        layered = material["type"] in schema.family("bsdf").types
         for key, part in parts_of(material, schema):
-            for header, neutral in (("emission", None), ("opacity", 1.0)):
+            plain = materials[part]["type"] in schema.family("bsdf").types
+            if layered and (not plain or next(parts_of(materials[part], schema), None) is not None):
+                problem = f"is {materials[part]['type']}, which is made of others itself"
+                raise where.child(name, key).error(problem, value=part, allowed="a plain material: one layer")
+            for header, neutral in WHOLE + (MAPPED if layered else ()):
                 if materials[part][header] != neutral:
                     raise where.child(part, header).error(
                         f'cannot be given to a part of "{name}" ({key})', allowed=f'{header} of "{name}" as a whole'

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from accuray.scene.arrays import check_together
@@ -10,7 +11,8 @@ from accuray.scene.errors import Document, Source, Where
 from accuray.scene.images import read_pixels
 from accuray.scene.kinds import resolve_value, vocabulary
 from accuray.scene.meshes import fill_from_file
-from accuray.scene.schema import Param, Type
+from accuray.scene.paths import Confinement
+from accuray.scene.schema import Param, Schema, Type
 from accuray.scene.scope import Scope
 from accuray.scene.spectra import metal_spectra
 
@@ -102,6 +104,12 @@ def _default(param: Param, scope: Scope) -> Any:
         default = [param.default] if param.kind == "reference" and param.role == "shape" else param.default
         scope.defaults[id(param)] = resolve_value(param, default, where, scope)
     return scope.defaults[id(param)]
+
+
+def default_values(type_: Type, schema: Schema) -> dict[str, Any]:
+    """Every parameter of a type at its canonical default; None where there is none, and for alternatives of a set."""
+    scope = Scope(Document({}, BUILT_IN), schema, Confinement.around(Path(), ()))
+    return {param.name: None if param.group else _default(param, scope) for param in type_.params}
 
 
 def _expand_shorthands(type_: Type, values: dict[str, Any], where: Where, scope: Scope) -> None:

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from accuray.scene import openpbr
 from accuray.scene import schema as schemas
 from accuray.scene.composition import check_parts
 from accuray.scene.errors import Document, Source, Where
@@ -92,6 +93,7 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     lights = _named("lights", schema.family("light").types, scope)
     shapes = _named("shapes", schema.family("shape").types, scope)
     check_shapes(shapes, schema, top.child("shapes"))
+    openpbr.settle(materials, top.child("materials"))
     check_parts(materials, schema, top.child("materials"))
     settle_colour_spaces(textures, materials, top.child("textures"))
     check_opacity(materials, top)

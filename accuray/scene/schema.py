@@ -89,9 +89,9 @@ class Schema:
         return self.families[name]
 
     def material_types(self) -> dict[str, Type]:
-        """BSDFs and compositions with the header that all materials share."""
+        """BSDFs, compositions and models with the header that all materials share."""
         header = self.family("material").common
-        types = {**self.family("bsdf").types, **self.family("composition").types}
+        types = {k: v for family in ("bsdf", "composition", "model") for k, v in self.family(family).types.items()}
         return {name: Type(name, type_.doc, (*type_.params, *header), type_.keeps) for name, type_ in types.items()}
 
 

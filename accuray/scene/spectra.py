@@ -213,7 +213,7 @@ def _scaled(reading: _Reading, spectrum: Spectrum, table: dict[str, Any]) -> Spe
     elif modifier == "normalize":
         spectrum = _with_y(reading, spectrum, 1.0)
     if "scale" in table:
-        spectrum = _times(spectrum, quantity(SCALE, table["scale"], where.child("scale")))
+        spectrum = spectrum.times(quantity(SCALE, table["scale"], where.child("scale")))
     return spectrum
 
 
@@ -222,16 +222,7 @@ def _with_y(reading: _Reading, spectrum: Spectrum, target: float) -> Spectrum:
     y = xyz(spectrum)[1]
     if not y > 0.0 or not math.isfinite(target / y):
         raise reading.where.error("has no visible light, so it cannot be scaled to a luminance")
-    return _times(spectrum, float(f"{target / y:.{FOLDED_DIGITS - 1}e}"))
-
-
-def _times(spectrum: Spectrum, factor: float) -> Spectrum:
-    """The spectrum times a factor; constants and RGB absorb it, so equal spellings stay equal."""
-    if spectrum.form == "constant":
-        return replace(spectrum, value=spectrum.value * factor)
-    if spectrum.form == "rgb":
-        return replace(spectrum, rgb=tuple(component * factor for component in spectrum.rgb))
-    return replace(spectrum, scale=spectrum.scale * factor)
+    return spectrum.times(float(f"{target / y:.{FOLDED_DIGITS - 1}e}"))
 
 
 def _check_range(reading: _Reading, spectrum: Spectrum, form: str = "") -> None:

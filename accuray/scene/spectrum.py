@@ -61,6 +61,14 @@ class Spectrum:
         """Value at a wavelength in nm (not for "rgb", which the renderer upsamples); nan where undefined."""
         return self.scale * _EVALUATE[self.form](self, wavelength)
 
+    def times(self, factor: float) -> Spectrum:
+        """The spectrum times a factor; constants and RGB absorb it, so equal spellings stay equal."""
+        if self.form == "constant":
+            return replace(self, value=self.value * factor)
+        if self.form == "rgb":
+            return replace(self, rgb=tuple(component * factor for component in self.rgb))
+        return replace(self, scale=self.scale * factor)
+
     def bounds(self) -> tuple[float, float]:
         """Smallest and largest value over 360-830 nm; tables: of all their points; RGB: of the components."""
         if self.form == "rgb":

@@ -101,7 +101,7 @@ def check_coordinates(textures: Objects, materials: Objects, shapes: Objects, sc
     """A texture that is laid out by texture coordinates needs shapes that have them. Raises SceneError."""
     types = schema.family("texture").types
     laid_out = {
-        name: (part, key, use.texture)
+        name: (f"{part}.{key}", use.texture)
         for name in materials
         for part in all_parts(materials, name, schema)
         for key, use in uses_of(materials[part])
@@ -111,10 +111,9 @@ def check_coordinates(textures: Objects, materials: Objects, shapes: Objects, sc
         for member in shape.get("of") or (name,):
             material = shape["material"] or shapes[member]["material"]
             if material in laid_out and shapes[member]["type"] == "mesh" and shapes[member]["uvs"] is None:
-                part, key, texture = laid_out[material]
+                user, texture = laid_out[material]
                 via = f' (shown by "{name}")' if member != name else ""
-                user = f"materials.{part}.{key}"
                 raise where.child("shapes", member).error(
-                    f'has no texture coordinates{via}, which the texture "{texture}" of {user} needs',
+                    f'has no texture coordinates{via}, which the texture "{texture}" of materials.{user} needs',
                     allowed="a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)",
                 )

@@ -30,7 +30,7 @@ Wavelengths carried(const std::vector<float>& wavelengths) {
 // A place on no shape: what a BSDF alone is asked at.
 constexpr TexturePoint middle = {{0.5f, 0.5f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
 
-// Calls fn with the values of the material's BSDF at the wavelengths.
+// Calls fn with what gives the values of the material's BSDF at the wavelengths, by the seed of its streams.
 template <class Fn>
 void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, Fn&& fn) {
   const SceneView& view = scene.accel.view();
@@ -38,9 +38,16 @@ void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<fl
   const Tagged bsdf = view.materials[material].bsdf;
   dispatch(Bsdfs{}, bsdf.tag, [&](auto type) {
     const Wavelengths wl = carried(wavelengths);
-    fn(view.as<typename decltype(type)::type>(bsdf).at({view, wl, middle, lanes(1.0f)}));
+    fn([&](uint32_t seed) {
+      return view.as<typename decltype(type)::type>(bsdf).at({view, wl, middle, lanes(1.0f), seed});
+    });
     return true;
   });
+}
+
+uint32_t seed_of(uint32_t seed, Vec3 a, Vec3 b) {
+  seed = hash(seed, bits_of(a.x), bits_of(a.y), bits_of(a.z));
+  return hash(seed, bits_of(b.x), bits_of(b.y), bits_of(b.z));
 }
 
 void require_rows(size_t a, size_t b) {
@@ -48,13 +55,14 @@ void require_rows(size_t a, size_t b) {
 }
 
 nb::dict bsdf_sample(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths,
-                     const Vectors& wo, const Vectors& u) {
+                     const Vectors& wo, const Vectors& u, uint32_t seed) {
   require_rows(wo.shape(0), u.shape(0));
   std::vector<float> wi, weight, pdf, eta_scale;
   std::vector<uint32_t> lobe;
-  with_bsdf(scene, material, wavelengths, [&](const auto& bsdf) {
+  with_bsdf(scene, material, wavelengths, [&](const auto& bsdf_by) {
     for (size_t i = 0; i < wo.shape(0); ++i) {
       const Vec3 numbers = row(u, i);
+      const auto bsdf = bsdf_by(seed_of(seed, row(wo, i), numbers));
       const BsdfSample s = bsdf.sample(row(wo, i), numbers.z, {numbers.x, numbers.y});
       put(wi, s.wi);
       put(weight, s.weight);
@@ -73,11 +81,12 @@ nb::dict bsdf_sample(const LoadedScene& scene, uint32_t material, const std::vec
 }
 
 nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths,
-                    const Vectors& wo, const Vectors& wi) {
+                    const Vectors& wo, const Vectors& wi, uint32_t seed) {
   require_rows(wo.shape(0), wi.shape(0));
   std::vector<float> value, pdf;
-  with_bsdf(scene, material, wavelengths, [&](const auto& bsdf) {
+  with_bsdf(scene, material, wavelengths, [&](const auto& bsdf_by) {
     for (size_t i = 0; i < wo.shape(0); ++i) {
+      const auto bsdf = bsdf_by(hash(seed, static_cast<uint32_t>(i)));
       put(value, bsdf.eval(row(wo, i), row(wi, i)));
       pdf.push_back(bsdf.pdf(row(wo, i), row(wi, i)));
     }
@@ -286,8 +295,8 @@ nb::object functions(const std::string& name, const Column<double>& x) {
 
 void bind_probe(nb::module_& module) {
   nb::module_ probe = module.def_submodule("probe", "Parts of the kernels over arrays, for tests and study.");
-  probe.def("bsdf_sample", &bsdf_sample, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "u"_a);
-  probe.def("bsdf_eval", &bsdf_eval, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "wi"_a);
+  probe.def("bsdf_sample", &bsdf_sample, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "u"_a, "seed"_a = 0);
+  probe.def("bsdf_eval", &bsdf_eval, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "wi"_a, "seed"_a = 0);
   probe.def("texture_values", &texture_values, "scene"_a, "texture"_a, "uv"_a, "points"_a);
   probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);
   probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);

@@ -2,6 +2,7 @@
 #include "bindings/bindings.h"
 #include "kernels/bsdf/composition.h"
 #include "kernels/bsdf/list.h"
+#include "kernels/bsdf/openpbr.h"
 #include "kernels/camera/list.h"
 #include "kernels/film/filter.h"
 #include "kernels/film/params.h"
@@ -97,6 +98,7 @@ nb::dict tables() {
   nb::dict families;
   families["bsdf"] = family(Bsdfs{}, nb::list());
   families["composition"] = family(Compositions{}, nb::list());
+  families["model"] = family(MaterialModels{}, nb::list());
   families["texture"] = family(Textures{}, nb::list());
   families["light"] = family(NamedLights{}, nb::list());
   families["shape"] = family(Shapes{}, params_of<ShapeCommon>());

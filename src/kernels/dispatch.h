@@ -42,4 +42,10 @@ constexpr uint32_t tag_of(TypeList<Ts...>) {
   return sizeof...(Ts);
 }
 
+// Whether the list begins with the types of `first`, in the same order.
+template <class... Ts, class... Fs>
+constexpr bool starts_with(TypeList<Ts...> list, TypeList<Fs...> first) {
+  return ((tag_of<Fs>(list) == tag_of<Fs>(first)) && ...);
+}
+
 }  // namespace accuray

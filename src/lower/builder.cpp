@@ -112,11 +112,18 @@ uint32_t SceneBuilder::add_composition(std::string_view type, Values values, con
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 
-uint32_t SceneBuilder::add_material(std::string_view type, const Values& values, const Values& header,
+uint32_t SceneBuilder::add_material(std::string_view type, Values values, const Values& header,
                                     std::optional<SpectrumRef> emission) {
   MaterialRecord material = material_with(header, emission);
+  MaterialRecord under{};
+  if (const auto base = values.find("base"); base != values.end()) {
+    under = materials_.at(static_cast<uint32_t>(std::get<double>(base->second)));
+    base->second = under.bsdf;
+    material.interior = under.interior;
+  } else {
+    material.interior = add_interior(values);
+  }
   material.bsdf = lower_type(Bsdfs{}, type, values, pool_);
-  material.interior = add_interior(values);
   if (header.contains("normal_map")) {
     const auto& map = std::get<TexturedReal>(value_of(header, "normal_map"));
     material.normal_map = map.texture;
@@ -136,8 +143,9 @@ uint32_t SceneBuilder::add_material(std::string_view type, const Values& values,
       return false;
     }
   });
-  material.oriented = oriented ? 1u : 0u;
-  material.reads_texture_point = oriented || any_textured(values) || any_textured(header) ? 1u : 0u;
+  material.oriented = oriented ? 1u : under.oriented;
+  const bool reads = material.oriented != 0 || any_textured(values) || any_textured(header);
+  material.reads_texture_point = reads ? 1u : under.reads_texture_point;
   materials_.push_back(material);
   return static_cast<uint32_t>(materials_.size() - 1);
 }

@@ -37,7 +37,7 @@ class SceneBuilder {
   TexturePool& textures() { return textures_; }
 
   // `header`: the parameters of MaterialCommon but for the emission.
-  uint32_t add_material(std::string_view type, const Values& values, const Values& header,
+  uint32_t add_material(std::string_view type, Values values, const Values& header,
                         std::optional<SpectrumRef> emission);
   // The parts must have been added; of `header` only the opacity counts.
   uint32_t add_composition(std::string_view type, Values values, const Values& header,

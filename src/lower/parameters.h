@@ -23,8 +23,8 @@ struct TexturedReal {
   double scale;
 };
 
-// A resolved value: number (also bool and the position of a choice), vector, spectrum, or textured number.
-using Value = std::variant<double, std::array<double, 3>, SpectrumRef, TexturedReal>;
+// A resolved value: number (also bool and the position of a choice), vector, spectrum, textured number, or BSDF.
+using Value = std::variant<double, std::array<double, 3>, SpectrumRef, TexturedReal, Tagged>;
 using Values = std::map<std::string, Value, std::less<>>;
 
 // What is wrong with the value of a parameter, and the parameter's name.
@@ -74,6 +74,7 @@ inline void write_member(const Param& param, const Value& value, uint8_t* target
       if (param.texturable) return put(real_ref(param, value));
       return put(static_cast<float>(std::get<double>(value)));
     case Kind::reference:
+      if (const auto* bsdf = std::get_if<Tagged>(&value)) return put(*bsdf);
       return put(static_cast<uint32_t>(std::get<double>(value)));
     case Kind::integer:
       return put(static_cast<int32_t>(std::get<double>(value)));

@@ -27,7 +27,8 @@ struct ShadingPoint {
   const SceneView& scene;
   const Wavelengths& wl;
   TexturePoint where;  // set for materials whose record says that they read it
-  Spectrum exterior;   // index of refraction on the front side of a dielectric body
+  Spectrum exterior;   // index of refraction on the front side
+  uint32_t seed = 0;   // of the streams that a stochastic BSDF draws from
 
   Spectrum spectrum(SpectrumRef ref) const {
     const SpectrumRecord& s = scene.spectra[ref.index];

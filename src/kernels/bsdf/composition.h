@@ -2,7 +2,7 @@
 //
 // A composed material has no BSDF. At each hit one of its parts is chosen, by a number that decides about nothing else,
 // and is the material there: light found by any technique is then the parts' mixture in expectation. Parts may be
-// composed themselves, up to `most_parts` choices deep.
+// composed themselves, up to `most_levels` choices deep.
 //
 // A composition is a struct of parameters with parts() and part(question, u), listed in Compositions.
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace accuray {
 
-constexpr uint32_t most_parts = 8;
+constexpr uint32_t most_levels = 16;
 
 struct PartQuestion {
   const SceneView& scene;

@@ -77,8 +77,7 @@ struct Conductor {
   uint32_t compensate;
 
   static constexpr const char* name = "conductor";
-  static constexpr const char* doc =
-      "A metal in vacuum or air, polished or rough: GGX facets with the exact Fresnel reflectance.";
+  static constexpr const char* doc = "A metal, polished or rough: GGX facets with the exact Fresnel reflectance.";
   static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
     return param_list(
@@ -141,7 +140,7 @@ struct Conductor {
   bool oriented() const { return is_stretched(anisotropy); }
   ConductorAt at(const ShadingPoint& p) const {
     const MetalAt metal = reflectance.index == none
-                              ? MetalAt::of_index(p.spectrum(eta), p.spectrum(k))
+                              ? MetalAt::of_index(p.spectrum(eta) / p.exterior, p.spectrum(k) / p.exterior)
                               : MetalAt::of_colours(p.spectrum(reflectance), p.spectrum(edge_tint));
     const FacetsAt at = FacetsAt::of(p, roughness, anisotropy, compensate);
     return {metal, at.facets, {at.place, separable != 0}};

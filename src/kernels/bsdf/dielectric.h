@@ -57,6 +57,7 @@ struct Dielectric {
   static constexpr const char* doc =
       "A surface of glass, water and the like, polished or frosted: exact Fresnel reflection and refraction with "
       "dispersion.";
+  static constexpr bool transmits = true;
   static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
     return param_list(

@@ -1,6 +1,8 @@
 // All BSDFs. A new one is a header beside these and a word here.
 #pragma once
 
+#include "kernels/bsdf/bases.h"
+#include "kernels/bsdf/coated.h"
 #include "kernels/bsdf/conductor.h"
 #include "kernels/bsdf/dielectric.h"
 #include "kernels/bsdf/diffuse.h"
@@ -9,7 +11,8 @@
 
 namespace accuray {
 
-using Bsdfs = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric>;
+using Bsdfs = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric, Coated>;
+static_assert(starts_with(Bsdfs{}, Bases{}), "a base has the same tag in both lists");
 
 // The header that every material has besides its BSDF.
 struct MaterialCommon {

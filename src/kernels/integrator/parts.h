@@ -16,7 +16,7 @@ inline float part_number(const Path& path) {
 
 ACCURAY_NOINLINE inline Part chosen_part(const SceneView& scene, Hit hit, Surface surface, bool behind, float u) {
   Part part{surface.material, false, u};
-  for (uint32_t level = 0; level < most_parts && scene.materials[part.material].composed != 0; ++level) {
+  for (uint32_t level = 0; level < most_levels && scene.materials[part.material].composed != 0; ++level) {
     const MaterialRecord& whole = scene.materials[part.material];
     const PartQuestion question{scene,
                                 whole.reads_texture_point != 0 ? texture_point(scene, hit, surface) : TexturePoint{},

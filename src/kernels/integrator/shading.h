@@ -7,12 +7,16 @@
 
 namespace accuray {
 
+// What a stochastic BSDF draws from at this vertex.
+constexpr uint32_t bsdf_stream = 0x62736466u;
+
 inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& material, const Path& path,
                                   const Surface& surface, uint32_t exterior) {
   const Spectrum before =
       material.interior == none ? lanes(1.0f) : exterior_ior(scene, material.interior, exterior, path.wl);
-  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before};
-  return {scene, path.wl, texture_point(scene, path.hit, surface), before};
+  const uint32_t seed = hash(path.sampler.key, path.sampler.index, path.depth, bsdf_stream);
+  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before, seed};
+  return {scene, path.wl, texture_point(scene, path.hit, surface), before, seed};
 }
 inline Frame shading_frame(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
                            const ShadingPoint& p, const Path& path) {

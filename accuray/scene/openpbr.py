@@ -1,0 +1,198 @@
+"""OpenPBR Surface as a tree of the renderer's own materials.
+
+The specification (OpenPBR 1.1, Academy Software Foundation 2024) describes slabs that are mixed by weights and layered
+upon each other. Here a mixture is a `mix`, the glossy coat of a matte base and the coat over all are `coated`, metals
+`conductor`, clear bodies `dielectric`, thin walls `thin_dielectric`, fibres a `sheen` over the rest. Where light
+between layers has no closed form in the specification, it is simulated.
+
+Trees are nested tables: a parameter that would name a material holds the table of that material instead, and holds
+only what differs from the defaults.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from accuray import data
+from accuray.scene.errors import Where
+from accuray.scene.spectrum import Spectrum
+from accuray.scene.textures import TextureUse
+
+Table = dict[str, Any]
+Weight = float | TextureUse
+
+NAME = "openpbr"
+BLACK: Table = {"type": "diffuse", "reflectance": Spectrum("constant", "reflectance", value=0.0)}
+FRAUNHOFER_FDC = (0.4861327, 0.5875618, 0.6562725)
+"""Wavelengths of Abbe's number, micrometres: the lines F, d and C."""
+
+
+def settle(materials: dict[str, Table], where: Where) -> None:
+    """Checks what the tables cannot say, and puts the emission in its place. Raises SceneError."""
+    for name, m in materials.items():
+        if m["type"] != NAME:
+            continue
+        at = where.child(name)
+        if m["emission_luminance"] > 0.0:
+            if m["emission"] is not None:
+                raise at.child("emission_luminance").error("cannot go with `emission`", allowed="one of them")
+            white = data.LUMINOUS_EFFICACY * math.fsum(data.observer().y)
+            m["emission"] = m["emission_color"].times(m["emission_luminance"] / white)
+        if m["base_metalness"] != 1.0 and m["specular_weight"] != 0.0 and not _is_one(m["specular_color"]):
+            raise at.child("specular_color").error(
+                "tints the reflection of a dielectric, which reflects all colours alike",
+                allowed="1, or base_metalness = 1: the colour of metal towards its edge",
+            )
+        if m["base_metalness"] != 0.0 and m["thin_film_weight"] != 0.0:
+            raise at.child("thin_film_weight").error(
+                "puts a film on metal that has no index", allowed="base_metalness = 0, or a `conductor` with a film"
+            )
+        if m["transmission_depth"] == 0.0 and not _is_one(m["transmission_color"]):
+            raise at.child("transmission_color").error("needs a depth", allowed="transmission_depth above 0")
+
+
+def tree(m: Table) -> Table:
+    """The material as a nested table, without emission, opacity and maps.
+
+    Args:
+        m: all parameters of an openpbr material, as a Scene holds them.
+    """
+    clear = _wall(m) if m["geometry_thin_walled"] else _body(m)
+    dielectric = _mixed(_plastic(m), clear, m["transmission_weight"])
+    base = _mixed(dielectric, _metal(m), m["base_metalness"])
+    coated = _mixed(base, _everywhere(base, lambda leaf: _under_coat(m, leaf)), m["coat_weight"])
+    return _fuzzy(m, coated)
+
+
+def _metal(m: Table) -> Table:
+    metal = {"type": "conductor", "edge_tint": m["specular_color"], **_facets(m, "specular")}
+    if isinstance(m["base_weight"], TextureUse):
+        return _mixed(BLACK, {**metal, "reflectance": m["base_color"]}, m["base_weight"])
+    return {**metal, "reflectance": _times(m["base_color"], m["base_weight"])}
+
+
+def _matte(m: Table) -> Table:
+    matte = {"type": "diffuse", "roughness": m["base_diffuse_roughness"]}
+    if isinstance(m["base_weight"], TextureUse):
+        return _mixed(BLACK, {**matte, "reflectance": m["base_color"]}, m["base_weight"])
+    return {**matte, "reflectance": _times(m["base_color"], m["base_weight"])}
+
+
+def _plastic(m: Table) -> Table:
+    """A matte base under a surface that reflects; without the latter where the specular weight is 0."""
+
+    def glossy(ior: float) -> Callable[[Table], Table]:
+        return lambda base: {"type": "coated", "base": base, "ior": ior, **_facets(m, "specular"), **_film(m)}
+
+    matte, weight = _matte(m), m["specular_weight"]
+    if isinstance(weight, TextureUse):
+        return _mixed(matte, _filmed(m, _everywhere(matte, glossy(m["specular_ior"]))), weight)
+    ior = weighted_ior(m["specular_ior"], weight)
+    return matte if ior == 1.0 else _filmed(m, _everywhere(matte, glossy(ior)))
+
+
+def _body(m: Table) -> Table:
+    """A clear body; its specular weight, if that is a texture, has no index to change."""
+    weight = m["specular_weight"]
+    ior = m["specular_ior"] if isinstance(weight, TextureUse) else weighted_ior(m["specular_ior"], weight)
+    index = dispersed(ior, m["transmission_dispersion_scale"], m["transmission_dispersion_abbe_number"])
+    body = {"type": "dielectric", "ior": index, **_facets(m, "specular"), **_film(m)}
+    if m["transmission_depth"] > 0.0:
+        body |= {key: m[key] for key in ("transmission_color", "transmission_depth")}
+    return _filmed(m, body)
+
+
+def _wall(m: Table) -> Table:
+    return {"type": "thin_dielectric", "ior": Spectrum("constant", "index", value=m["specular_ior"])}
+
+
+def _under_coat(m: Table, leaf: Table) -> Table:
+    """A plain material under the coat, whose surface takes the place of a glossy one of its own."""
+    base = leaf["base"] if leaf["type"] == "coated" else leaf
+    share = _root(m["coat_color"])
+    coat = {"type": "coated", "base": base, "ior": m["coat_ior"], "transmission_color": share}
+    return {**coat, **_facets(m, "coat")}
+
+
+def _fuzzy(m: Table, below: Table) -> Table:
+    if m["fuzz_weight"] == 0.0:
+        return below
+    fibres = {"type": "sheen", "color": m["fuzz_color"], "roughness": m["fuzz_roughness"]}
+    layer = {"type": "fibres", "below": below, "above": fibres}
+    return {**layer, "weight": m["fuzz_weight"], "roughness": m["fuzz_roughness"]}
+
+
+def _film(m: Table) -> Table:
+    if m["thin_film_weight"] == 0.0:
+        return {}
+    index = Spectrum("constant", "index", value=m["thin_film_ior"])
+    return {"film_thickness": m["thin_film_thickness"], "film_ior": index}
+
+
+def _filmed(m: Table, whole: Table) -> Table:
+    """The material with its film on the share of the film's weight only."""
+    if m["thin_film_weight"] in (0.0, 1.0):
+        return whole
+    bare = _everywhere(whole, lambda leaf: {key: leaf[key] for key in leaf if not key.startswith("film_")})
+    return _mixed(bare, whole, m["thin_film_weight"])
+
+
+def _facets(m: Table, layer: str) -> Table:
+    """Roughness and anisotropy. OpenPBR keeps the mean square of the two roughnesses, we the greater of them."""
+    roughness, anisotropy = m[f"{layer}_roughness"], m[f"{layer}_roughness_anisotropy"]
+    if not isinstance(anisotropy, TextureUse) and anisotropy > 0.0:
+        stretch = (2.0 / (1.0 + (1.0 - anisotropy) ** 2)) ** 0.25
+        roughness = _times(roughness, stretch) if isinstance(roughness, TextureUse) else min(1.0, roughness * stretch)
+    return {"roughness": roughness, "anisotropy": anisotropy}
+
+
+def weighted_ior(ior: float, weight: float) -> float:
+    """The index whose reflectance along the normal is ``weight`` times that of ``ior`` (OpenPBR 1.1)."""
+    if weight == 1.0:
+        return ior
+    amplitude = math.sqrt(weight) * (ior - 1.0) / (ior + 1.0)
+    return (1.0 + amplitude) / (1.0 - amplitude)
+
+
+def dispersed(ior: float, scale: float, abbe_number: float) -> Spectrum:
+    """Cauchy's equation through ``ior`` at the line d with the Abbe number ``abbe_number / scale``."""
+    if scale == 0.0 or ior == 1.0:
+        return Spectrum("constant", "index", value=ior)
+    f, d, c = FRAUNHOFER_FDC
+    slope = (ior - 1.0) * scale / abbe_number / (f**-2 - c**-2)
+    return Spectrum("cauchy", "index", A0=ior - slope * d**-2, B=(slope,))
+
+
+def _mixed(first: Table, second: Table, weight: Weight) -> Table:
+    if weight == 0.0 or weight == 1.0:
+        return second if weight else first
+    return {"type": "mix", "first": first, "second": second, "weight": weight}
+
+
+def _everywhere(node: Table, change: Callable[[Table], Table]) -> Table:
+    """The tree with its plain materials changed, those under a layer with their layer as one."""
+    if node["type"] != "mix":
+        return change(node)
+    return {**node, **{key: _everywhere(node[key], change) for key in ("first", "second")}}
+
+
+def _times(value: Any, factor: float) -> Any:
+    if factor == 1.0:
+        return value
+    return replace(value, scale=value.scale * factor) if isinstance(value, TextureUse) else value.times(factor)
+
+
+def _root(colour: Spectrum) -> Spectrum:
+    """What is left after one way if the colour is left after two of them."""
+    if colour.form == "constant":
+        return replace(colour, value=math.sqrt(colour.value))
+    if colour.form == "rgb":
+        return replace(colour, rgb=tuple(map(math.sqrt, colour.rgb)))
+    return replace(colour, values=tuple(map(math.sqrt, colour.values)), scale=math.sqrt(colour.scale))
+
+
+def _is_one(colour: Any) -> bool:
+    return not isinstance(colour, TextureUse) and colour.bounds() == (1.0, 1.0)

@@ -1,0 +1,100 @@
+// The BSDFs that a coat may lie upon, and the values of any one of them.
+//
+// A base is found by its tag at every use, so that what is built upon bases exists once for all of them.
+#pragma once
+
+#include "kernels/bsdf/conductor.h"
+#include "kernels/bsdf/dielectric.h"
+#include "kernels/bsdf/diffuse.h"
+#include "kernels/bsdf/thin_dielectric.h"
+#include "kernels/dispatch.h"
+
+namespace accuray {
+
+using Bases = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric>;
+
+template <class T>
+T declared();  // for unevaluated use
+template <class Bsdf>
+using ValuesOf = decltype(declared<const Bsdf&>().at(declared<const ShadingPoint&>()));
+
+// Room for the values of one of a list's types.
+template <class List>
+union AnyValues;
+template <>
+union AnyValues<TypeList<>> {};
+template <class T, class... Ts>
+union AnyValues<TypeList<T, Ts...>> {
+  ValuesOf<T> first;
+  AnyValues<TypeList<Ts...>> others;
+
+  AnyValues() {}
+  template <class X>
+  void set(const ValuesOf<X>& values) {
+    if constexpr (is_same<X, T>) {
+      first = values;
+    } else {
+      others.template set<X>(values);
+    }
+  }
+  template <class X>
+  const ValuesOf<X>& get() const {
+    if constexpr (is_same<X, T>) {
+      return first;
+    } else {
+      return others.template get<X>();
+    }
+  }
+};
+
+struct BaseAt {
+  uint32_t tag;
+  AnyValues<Bases> values;
+
+  static BaseAt of(Tagged base, const ShadingPoint& p) {
+    BaseAt at;
+    at.tag = base.tag;
+    dispatch(Bases{}, base.tag, [&](auto type) {
+      using Bsdf = typename decltype(type)::type;
+      at.values.template set<Bsdf>(p.scene.as<Bsdf>(base).at(p));
+    });
+    return at;
+  }
+  // Calls fn with the values as what they are.
+  template <class Fn>
+  ACCURAY_INLINE auto visit(Fn&& fn) const {
+    return dispatch(Bases{}, tag, [&](auto type) { return fn(values.template get<typename decltype(type)::type>()); });
+  }
+
+  bool is_delta() const {
+    return visit([](const auto& base) { return base.is_delta(); });
+  }
+  uint32_t lobe() const {
+    return visit([](const auto& base) { return base.lobe; });
+  }
+  // Whether light goes through to its back.
+  bool transmits() const {
+    return dispatch(Bases{}, tag, [](auto type) { return requires { decltype(type)::type::transmits; }; });
+  }
+  Spectrum eval(Vec3 wo, Vec3 wi) const {
+    return visit([&](const auto& base) { return base.eval(wo, wi); });
+  }
+  float pdf(Vec3 wo, Vec3 wi) const {
+    return visit([&](const auto& base) { return base.pdf(wo, wi); });
+  }
+  // By lane, if each were the hero.
+  Spectrum pdfs(Vec3 wo, Vec3 wi) const {
+    return visit([&](const auto& base) {
+      if constexpr (requires { base.pdfs(wo, wi); }) {
+        return base.pdfs(wo, wi);
+      } else {
+        return lanes(base.pdf(wo, wi));
+      }
+    });
+  }
+  BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
+    return visit([&](const auto& base) { return base.sample(wo, u_lobe, u); });
+  }
+};
+
+}  // namespace accuray
