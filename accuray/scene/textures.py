@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from accuray.scene.composition import all_parts
@@ -25,7 +25,8 @@ _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
 class TextureUse:
     """A parameter's value that a texture gives: its colour, or for a number one of its channels, times ``scale``.
 
-    ``channel`` is "" for a colour, "map" for a normal or bump map.
+    ``scale`` is in the renderer's unit where the number has one (metres of a thickness). ``channel`` is "" for a
+    colour, "map" for a normal or bump map.
     """
 
     texture: str
@@ -42,7 +43,9 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
     """The reference ``{ texture = "NAME", scale = 1, channel = "red" }``. Raises SceneError."""
     if not param.texturable:
         raise where.error(f"takes no texture, only a {param.kind}", value=value)
+    unit = param.unit if param.kind == "float" else ""
     if isinstance(value, TextureUse):
+        unit = ""
         value = {key: item for key, item in vars(value).items() if item not in ("", MAP)}
     elif not isinstance(value, dict):
         value = {"texture": value}
@@ -53,7 +56,7 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
     name, known = value["texture"], scope.names("textures")
     if not isinstance(name, str) or name not in known:
         raise where.child("texture").unknown(name, "texture", known)
-    scale = quantity(_SCALE, value.get("scale", _SCALE.default), where.child("scale"))
+    scale = quantity(replace(_SCALE, unit=unit), value.get("scale", _SCALE.default), where.child("scale"))
     if param.kind != "float":
         return TextureUse(name, scale, MAP if param.kind == "reference" else "")
     return TextureUse(name, scale, choice(_CHANNEL, value.get("channel", _CHANNEL.default), where.child("channel")))
@@ -94,6 +97,15 @@ def check_opacity(materials: Objects, where: Where) -> None:
         if material["emission"] is not None and material["opacity"] != 1.0:
             raise where.child("materials", name, "opacity").error(
                 "cannot go with `emission`", allowed="opacity = 1 for a surface that emits"
+            )
+
+
+def check_films(materials: Objects, where: Where) -> None:
+    """Interference in a film needs the index of what is below it, not its colour. Raises SceneError."""
+    for name, material in materials.items():
+        if material.get("film_thickness", 0.0) != 0.0 and material.get("reflectance") is not None:
+            raise where.child("materials", name, "film_thickness").error(
+                "cannot go with `reflectance`", allowed="a film on a metal given by its name, or by eta and k"
             )
 
 

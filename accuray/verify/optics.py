@@ -1,4 +1,4 @@
-"""Closed forms of geometrical optics: Fresnel's equations, slabs, diffuse reflectance, Sellmeier's formula.
+"""Closed forms of optics: Fresnel's equations, thin films, slabs, diffuse reflectance, Sellmeier's formula.
 
 Light is unpolarised at every interface, as in the renderer: reflectances are means over both polarisations taken
 interface by interface. For stacks this differs from nature, where s and p light go their separate ways: a glass slab
@@ -7,6 +7,7 @@ at 60 degrees transmits 0.8362 in this model and 0.8481 in nature (`slab_transmi
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Sequence
 
@@ -27,6 +28,25 @@ def fresnel(theta: float, index: complex) -> float:
     if isinstance(index, float) and math.sin(theta) >= index:
         return 1.0
     return 0.5 * sum(fresnel_pair(theta, index))
+
+
+def film_reflectance(
+    theta: float, film: float, behind: complex, thickness: float, wavelength: float, before: float = 1.0
+) -> float:
+    """Reflectance for unpolarised light of a plane film between two media, from the one of index `before`.
+
+    Airy's (1833) sum over the reflections inside the film. `thickness` and `wavelength` share a unit.
+    """
+    indices = (complex(before), complex(film), complex(behind))
+    cosines = [cmath.sqrt(1.0 - (before * math.sin(theta) / n) ** 2) for n in indices]
+    cosines = [-c if (n * c).imag < 0.0 else c for n, c in zip(indices, cosines, strict=True)]
+    turn = cmath.exp(4j * math.pi * indices[1] * cosines[1] * thickness / wavelength)
+    total = 0.0
+    for power in (1, -1):  # s, p
+        y = [n * c**power for n, c in zip(indices, cosines, strict=True)]
+        first, second = ((y[j] - y[j + 1]) / (y[j] + y[j + 1]) for j in (0, 1))
+        total += 0.5 * abs((first + second * turn) / (1.0 + first * second * turn)) ** 2
+    return total
 
 
 def slab_transmittance(reflectance: float) -> float:

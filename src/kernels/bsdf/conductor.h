@@ -75,72 +75,78 @@ struct Conductor {
   RealRef roughness, anisotropy;
   uint32_t separable;
   uint32_t compensate;
+  RealRef film_thickness;
+  SpectrumRef film_ior;
 
   static constexpr const char* name = "conductor";
-  static constexpr const char* doc = "A metal, polished or rough: GGX facets with the exact Fresnel reflectance.";
+  static constexpr const char* doc =
+      "A metal, polished or rough, bare or with a thin film on it: GGX facets with the exact Fresnel reflectance.";
   static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
-    return param_list(
-        Param{.name = "metal",
-              .kind = Kind::text,
-              .doc = "Named metal with measured index: Au, Ag, Cu, Al, Fe, Ti, Cr, Ni, W, Pt, ..., or "
-                     "perfect (reflects all).",
-              .group = "index:metal"},
-        Param{.name = "eta",
-              .kind = Kind::spectrum,
-              .doc = "Real part of the refractive index.",
-              .low = 0,
-              .unit = "1",
-              .role = "index",
-              .group = "index:eta_k",
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Conductor, eta)},
-        Param{.name = "k",
-              .kind = Kind::spectrum,
-              .doc = "Imaginary part of the refractive index.",
-              .low = 0,
-              .unit = "1",
-              .role = "index",
-              .group = "index:eta_k",
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Conductor, k)},
-        Param{.name = "reflectance",
-              .kind = Kind::spectrum,
-              .doc = "Reflectance along the normal, in place of an index.",
-              .low = 0,
-              .high = 1,
-              .unit = "1",
-              .role = "reflectance",
-              .group = "index:reflectance",
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Conductor, reflectance)},
-        Param{.name = "edge_tint",
-              .kind = Kind::spectrum,
-              .doc = "With reflectance: what the reflectance at 82 degrees is multiplied with, towards the edge.",
-              .preset = "1",
-              .low = 0,
-              .high = 1,
-              .unit = "1",
-              .role = "reflectance",
-              .group = "index:reflectance",
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Conductor, edge_tint)},
-        roughness_param(ACCURAY_OFFSET_OF(Conductor, roughness)),
-        anisotropy_param(ACCURAY_OFFSET_OF(Conductor, anisotropy)),
-        Param{.name = "masking",
-              .kind = Kind::choice,
-              .doc = "Whether facets' masking and shadowing know of their common height.",
-              .preset = "\"correlated\"",
-              .choices = "correlated|separable",
-              .member = ACCURAY_OFFSET_OF(Conductor, separable)},
-        compensate_param(ACCURAY_OFFSET_OF(Conductor, compensate)));
+    return joined(
+        param_list(
+            Param{.name = "metal",
+                  .kind = Kind::text,
+                  .doc = "Named metal with measured index: Au, Ag, Cu, Al, Fe, Ti, Cr, Ni, W, Pt, ..., or "
+                         "perfect (reflects all).",
+                  .group = "index:metal"},
+            Param{.name = "eta",
+                  .kind = Kind::spectrum,
+                  .doc = "Real part of the refractive index.",
+                  .low = 0,
+                  .unit = "1",
+                  .role = "index",
+                  .group = "index:eta_k",
+                  .animatable = true,
+                  .member = ACCURAY_OFFSET_OF(Conductor, eta)},
+            Param{.name = "k",
+                  .kind = Kind::spectrum,
+                  .doc = "Imaginary part of the refractive index.",
+                  .low = 0,
+                  .unit = "1",
+                  .role = "index",
+                  .group = "index:eta_k",
+                  .animatable = true,
+                  .member = ACCURAY_OFFSET_OF(Conductor, k)},
+            Param{.name = "reflectance",
+                  .kind = Kind::spectrum,
+                  .doc = "Reflectance along the normal, in place of an index.",
+                  .low = 0,
+                  .high = 1,
+                  .unit = "1",
+                  .role = "reflectance",
+                  .group = "index:reflectance",
+                  .texturable = true,
+                  .animatable = true,
+                  .member = ACCURAY_OFFSET_OF(Conductor, reflectance)},
+            Param{.name = "edge_tint",
+                  .kind = Kind::spectrum,
+                  .doc = "With reflectance: what the reflectance at 82 degrees is multiplied with, towards the edge.",
+                  .preset = "1",
+                  .low = 0,
+                  .high = 1,
+                  .unit = "1",
+                  .role = "reflectance",
+                  .group = "index:reflectance",
+                  .texturable = true,
+                  .animatable = true,
+                  .member = ACCURAY_OFFSET_OF(Conductor, edge_tint)},
+            roughness_param(ACCURAY_OFFSET_OF(Conductor, roughness)),
+            anisotropy_param(ACCURAY_OFFSET_OF(Conductor, anisotropy)),
+            Param{.name = "masking",
+                  .kind = Kind::choice,
+                  .doc = "Whether facets' masking and shadowing know of their common height.",
+                  .preset = "\"correlated\"",
+                  .choices = "correlated|separable",
+                  .member = ACCURAY_OFFSET_OF(Conductor, separable)},
+            compensate_param(ACCURAY_OFFSET_OF(Conductor, compensate))),
+        film_params(ACCURAY_OFFSET_OF(Conductor, film_thickness), ACCURAY_OFFSET_OF(Conductor, film_ior)));
   }
   bool oriented() const { return is_stretched(anisotropy); }
   ConductorAt at(const ShadingPoint& p) const {
     const MetalAt metal = reflectance.index == none
-                              ? MetalAt::of_index(p.spectrum(eta) / p.exterior, p.spectrum(k) / p.exterior)
+                              ? MetalAt::of_index(p.spectrum(eta) / p.exterior, p.spectrum(k) / p.exterior,
+                                                  FilmAt::of(p, film_thickness, film_ior))
                               : MetalAt::of_colours(p.spectrum(reflectance), p.spectrum(edge_tint));
     const FacetsAt at = FacetsAt::of(p, roughness, anisotropy, compensate);
     return {metal, at.facets, {at.place, separable != 0}};

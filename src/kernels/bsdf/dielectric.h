@@ -33,7 +33,7 @@ struct DielectricAt {
   BsdfSample smooth_sample(Vec3 wo, float u_lobe) const {
     const float cos_o = abs(wo.z);
     const Spectrum eta = wo.z > 0.0f ? rough.ior : 1.0f / rough.ior;
-    const Spectrum reflectance = fresnel_dielectric(cos_o, eta);
+    const Spectrum reflectance = rough.reflectance(cos_o, wo.z > 0.0f);
     const float chance = chance_for_all(reflectance, rough.hero_only);
     if (u_lobe < chance) return mirror_sample(wo, reflectance / chance);
     // Snell's law for the hero; without dispersion its direction is everyone's.
@@ -52,58 +52,66 @@ struct Dielectric {
   SpectrumRef ior;
   RealRef roughness, anisotropy;
   uint32_t compensate;
+  RealRef film_thickness;
+  SpectrumRef film_ior;
 
   static constexpr const char* name = "dielectric";
   static constexpr const char* doc =
       "A surface of glass, water and the like, polished or frosted: exact Fresnel reflection and refraction with "
-      "dispersion.";
+      "dispersion, and the colours of a thin film on it.";
   static constexpr bool transmits = true;
   static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
-    return param_list(
-        Param{.name = "ior",
-              .kind = Kind::spectrum,
-              .doc = "Index behind the surface relative to the index before it, or absolute if there is a "
-                     "priority: a number, a named glass (N-BK7, SF11, water_20C, diamond, ...), Sellmeier or "
-                     "Cauchy coefficients, or a table.",
-              .preset = "1.5",
-              .low = 0.05,
-              .high = 20,
-              .unit = "1",
-              .role = "index",
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Dielectric, ior)},
-        Param{.name = "transmission_color",
-              .kind = Kind::spectrum,
-              .doc = "Share of the light that is left after transmission_depth inside the body, which must be closed.",
-              .low = 0,
-              .high = 1,
-              .unit = "1",
-              .role = "reflectance",
-              .animatable = true},
-        Param{.name = "transmission_depth",
-              .kind = Kind::real,
-              .doc = "Way inside the body after which transmission_color is left.",
-              .low = 1e-12,
-              .unit = "m",
-              .animatable = true},
-        Param{.name = "priority",
-              .kind = Kind::integer,
-              .doc = "Of overlapping bodies the one with the highest priority fills the place. With 0 the "
-                     "surface is an interface by itself, and ior relative to whatever is around it.",
-              .preset = "0",
-              .low = 0,
-              .high = 1e6},
-        roughness_param(ACCURAY_OFFSET_OF(Dielectric, roughness)),
-        anisotropy_param(ACCURAY_OFFSET_OF(Dielectric, anisotropy)),
-        compensate_param(ACCURAY_OFFSET_OF(Dielectric, compensate)));
+    return joined(
+        param_list(
+            Param{.name = "ior",
+                  .kind = Kind::spectrum,
+                  .doc = "Index behind the surface relative to the index before it, or absolute if there is a "
+                         "priority: a number, a named glass (N-BK7, SF11, water_20C, diamond, ...), Sellmeier or "
+                         "Cauchy coefficients, or a table.",
+                  .preset = "1.5",
+                  .low = 0.05,
+                  .high = 20,
+                  .unit = "1",
+                  .role = "index",
+                  .animatable = true,
+                  .member = ACCURAY_OFFSET_OF(Dielectric, ior)},
+            Param{.name = "transmission_color",
+                  .kind = Kind::spectrum,
+                  .doc =
+                      "Share of the light that is left after transmission_depth inside the body, which must be closed.",
+                  .low = 0,
+                  .high = 1,
+                  .unit = "1",
+                  .role = "reflectance",
+                  .animatable = true},
+            Param{.name = "transmission_depth",
+                  .kind = Kind::real,
+                  .doc = "Way inside the body after which transmission_color is left.",
+                  .low = 1e-12,
+                  .unit = "m",
+                  .animatable = true},
+            Param{.name = "priority",
+                  .kind = Kind::integer,
+                  .doc = "Of overlapping bodies the one with the highest priority fills the place. With 0 the "
+                         "surface is an interface by itself, and ior relative to whatever is around it.",
+                  .preset = "0",
+                  .low = 0,
+                  .high = 1e6},
+            roughness_param(ACCURAY_OFFSET_OF(Dielectric, roughness)),
+            anisotropy_param(ACCURAY_OFFSET_OF(Dielectric, anisotropy)),
+            compensate_param(ACCURAY_OFFSET_OF(Dielectric, compensate))),
+        film_params(ACCURAY_OFFSET_OF(Dielectric, film_thickness), ACCURAY_OFFSET_OF(Dielectric, film_ior)));
   }
   bool oriented() const { return is_stretched(anisotropy); }
   DielectricAt at(const ShadingPoint& p) const {
     const Spectrum relative = p.spectrum(ior) / p.exterior;
     const bool disperses = relative[0] != relative[1] || relative[0] != relative[2] || relative[0] != relative[3];
     const FacetsAt at = FacetsAt::of(p, roughness, anisotropy, compensate);
-    return {{relative, disperses, p.wl.hero_only, at.facets, at.place}};
+    const FilmAt film = FilmAt::of(p, film_thickness, film_ior);
+    const bool even = at.facets.is_smooth() || !film.exists();
+    return {{relative, disperses, p.wl.hero_only, at.facets, at.place, film,
+             even ? lanes(1.0f) : film_on_diffuse_light(film, relative)}};
   }
 };
 

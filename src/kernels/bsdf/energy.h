@@ -70,28 +70,39 @@ struct MetalLoss {
 struct InterfaceLoss {
   EnergyPlace place;
   TablePlace<energy_indices> index;
+  float share;  // of diffuse light passes, relative to the bare interface; 1 without a film
 
-  static InterfaceLoss of(EnergyPlace place, float rare, float dense) {
-    return {place, TablePlace<energy_indices>::at(sqrt((dense - rare) / (dense + rare)))};
+  static InterfaceLoss of(EnergyPlace place, float rare, float dense, float share) {
+    return {place, TablePlace<energy_indices>::at(sqrt((dense - rare) / (dense + rare))), share};
   }
   float at(bool in_dense, float cosine) const {
     const uint32_t side = in_dense ? 1 : 0;
-    return between(place.loss(energy_table.interface[index.first][side], cosine),
-                   place.loss(energy_table.interface[index.first + 1][side], cosine), index.fraction);
+    const float bare = between(place.loss(energy_table.interface[index.first][side], cosine),
+                               place.loss(energy_table.interface[index.first + 1][side], cosine), index.fraction);
+    if (share != 1.0f) [[unlikely]]
+      return with_film(MetalLoss{place, false}.at(cosine), bare);
+    return bare;
   }
   float mean(bool in_dense) const {
     const uint32_t side = in_dense ? 1 : 0;
-    return between(place.mean(energy_table.mean[index.first][side]),
-                   place.mean(energy_table.mean[index.first + 1][side]), index.fraction);
+    const float bare = between(place.mean(energy_table.mean[index.first][side]),
+                               place.mean(energy_table.mean[index.first + 1][side]), index.fraction);
+    if (share != 1.0f) [[unlikely]]
+      return with_film(MetalLoss{place, false}.mean(), bare);
+    return bare;
   }
   // Share of what is given back that crosses the interface. From the rarer side it is what a smooth interface would let
   // through of diffuse light; from the denser one reciprocity leaves no choice.
   float crossing(bool in_dense, float rare, float dense) const {
-    const float from_rare = linear(energy_table.transmitted, index);
+    const float from_rare = min(share * linear(energy_table.transmitted, index), 1.0f);
     if (!in_dense) return from_rare;
     const float back = from_rare * mean(false) * rare * rare;
     return min(back / max(mean(true) * dense * dense, 0x1p-100f), 1.0f);
   }
+
+ private:
+  // Of the light that a film keeps from passing facets lose what a metal's do.
+  float with_film(float reflecting, float bare) const { return max(between(reflecting, bare, share), 0.0f); }
 };
 
 }  // namespace accuray

@@ -1,16 +1,18 @@
-// The reflectance of a metal's facet: from its complex index, or from two colours.
+// The reflectance of a metal's facet: from its complex index, with a film on it or without, or from two colours.
 #pragma once
 
 #include "kernels/bsdf/bsdf.h"
 #include "kernels/bsdf/fresnel.h"
+#include "kernels/bsdf/thin_film.h"
 
 namespace accuray {
 
 struct MetalAt {
   Spectrum a, b;  // real and imaginary part of the index; or reflectance along the normal and depth of the dip
   bool tinted;
+  FilmAt film = {};
 
-  static MetalAt of_index(Spectrum eta, Spectrum k) { return {eta, k, false}; }
+  static MetalAt of_index(Spectrum eta, Spectrum k, FilmAt film = {}) { return {eta, k, false, film}; }
   // Schlick's curve with a dip that gives reflectance times tint at 82 degrees, where the curves of metals are lowest
   // (Kutz, Hasan and Edmondson 2021).
   static MetalAt of_colours(Spectrum reflectance, Spectrum tint) {
@@ -21,6 +23,8 @@ struct MetalAt {
   }
 
   Spectrum reflectance(float cosine) const {
+    if (film.exists()) [[unlikely]]
+      return film_on_metal(film, a, b, cosine);
     if (!tinted) return fresnel_conductor(cosine, a, b);
     const float x = 1.0f - cosine;
     const float x5 = x * x * x * x * x;
@@ -30,9 +34,8 @@ struct MetalAt {
   // (Abramowitz and Stegun 1964, table 25.8).
   Spectrum mean() const {
     if (tinted) return a * (20.0f / 21.0f) + (1.0f / 21.0f) - b * (1.0f / 126.0f);
-    return fresnel_conductor(0.2123405382f, a, b) * 0.1396539598f +
-           fresnel_conductor(0.5905331356f, a, b) * 0.4584822128f +
-           fresnel_conductor(0.9114120405f, a, b) * 0.4018638274f;
+    return reflectance(0.2123405382f) * 0.1396539598f + reflectance(0.5905331356f) * 0.4584822128f +
+           reflectance(0.9114120405f) * 0.4018638274f;
   }
 };
 

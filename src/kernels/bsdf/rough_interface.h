@@ -13,6 +13,7 @@
 #include "kernels/bsdf/bsdf.h"
 #include "kernels/bsdf/energy.h"
 #include "kernels/bsdf/fresnel.h"
+#include "kernels/bsdf/thin_film.h"
 #include "kernels/sampling/warp.h"
 
 namespace accuray {
@@ -23,6 +24,15 @@ struct RoughInterface {
   bool hero_only;
   Ggx facets;
   EnergyPlace place;
+  FilmAt film = {};
+  Spectrum film_share = lanes(1.0f);  // of diffuse light passes, relative to the bare interface
+
+  // Of a facet, for light that comes at `cosine` from before it (above) or from behind.
+  Spectrum reflectance(float cosine, bool above) const {
+    if (film.exists()) [[unlikely]]
+      return film_reflectance(film, ior, cosine, above);
+    return fresnel_dielectric(cosine, across(above));
+  }
 
   struct Lobes {
     Spectrum value;
@@ -62,28 +72,32 @@ struct RoughInterface {
 
  private:
   struct Loss {
-    Spectrum share;     // lost from the direction, by lane
-    Spectrum crossing;  // part of it that is given back on the other side
-    float chance;       // of a sample of the lobe that gives it back
-    float crossing_chance;
+    Spectrum share;         // lost from the direction, by lane
+    Spectrum crossing;      // part of it that is given back on the other side
+    float chance;           // of a sample of the lobe that gives it back
+    float crossing_chance;  // of those
   };
 
   // Index beyond over index on the side of wo.
   float across(int k, bool above) const { return above ? ior[k] : 1.0f / ior[k]; }
   Spectrum across(bool above) const { return above ? ior : 1.0f / ior; }
+  // Lanes have one reflectance, not each its own.
+  bool even() const { return !disperses && !film.exists(); }
   // What decides for all lanes: their mean while they go together.
-  float decision(Spectrum s) const { return chance_for_all(s, !disperses || hero_only); }
+  float decision(Spectrum s) const { return chance_for_all(s, even() || hero_only); }
   // Calls fn for each lane that differs and carries something.
   template <class Fn>
   Spectrum by_lane(Fn&& fn) const {
-    if (!disperses) return lanes(fn(0));
+    if (even()) return lanes(fn(0));
     Spectrum result = lanes(0.0f);
     for (int k = 0; k < (hero_only ? 1 : 4); ++k) result[k] = fn(k);
     return result;
   }
 
   bool is_dense(int k, bool above) const { return (ior[k] < 1.0f) == above; }
-  InterfaceLoss loss(int k) const { return InterfaceLoss::of(place, min(ior[k], 1.0f), max(ior[k], 1.0f)); }
+  InterfaceLoss loss(int k) const {
+    return InterfaceLoss::of(place, min(ior[k], 1.0f), max(ior[k], 1.0f), film_share[k]);
+  }
 
   Loss lost_from(float cosine, bool above) const {
     Loss lost;
@@ -91,7 +105,8 @@ struct RoughInterface {
     lost.crossing =
         by_lane([&](int k) { return loss(k).crossing(is_dense(k, above), min(ior[k], 1.0f), max(ior[k], 1.0f)); });
     lost.chance = decision(lost.share);
-    lost.crossing_chance = decision(lost.crossing);
+    lost.crossing_chance = lost.crossing[0];
+    if (!even() && lost.chance > 0.0f) lost.crossing_chance = decision(lost.share * lost.crossing) / lost.chance;
     return lost;
   }
 
@@ -99,13 +114,12 @@ struct RoughInterface {
   Vec3 facet_sample(Vec3 o, float u_choice, Vec2 u, bool above) const {
     const Vec3 m = facets.sample_visible(o, u);
     const float cosine = min(dot(o, m), 1.0f);
-    const Spectrum eta = across(above);
     Vec3 wi;
-    if (u_choice < decision(fresnel_dielectric(cosine, eta))) {
+    if (u_choice < decision(reflectance(cosine, above))) {
       wi = fma(2.0f * cosine, m, -o);
       return wi.z > 0.0f ? wi : Vec3{0, 0, 0};
     }
-    const float e = eta[0];
+    const float e = across(0, above);
     const float sin2_t = (1.0f - cosine * cosine) / (e * e);
     if (sin2_t >= 1.0f) return {0, 0, 0};
     wi = normalize(fma(cosine / e - sqrt(1.0f - sin2_t), m, o * (-1.0f / e)));
@@ -116,7 +130,7 @@ struct RoughInterface {
     const Vec3 half = wo + wi;
     const float root_o = facets.root(wo);
     const float density = facets.density(half);
-    const Spectrum f = fresnel_dielectric(min(0.5f * length(half), 1.0f), across(above));
+    const Spectrum f = reflectance(min(0.5f * length(half), 1.0f), above);
     const float once = 0.25f * density * correlated_masking(wo.z, root_o, wi.z, facets.root(wi)) * wi.z;
     const float pdf_once = 0.5f * density / (wo.z + root_o) * decision(f);
     const Loss lost = lost_from(wo.z, above);
@@ -148,8 +162,8 @@ struct RoughInterface {
       const float cos_mi = -dot(wi, half) * scale;
       if (!(cos_mo > 0.0f && cos_mi > 0.0f)) return 0.0f;
       const float common = facets.density(half) * cos_mo * cos_mi / squared;
-      const float through = transmittance(n_o, cos_mo, n_i, cos_mi);
-      const float chance = disperses ? 1.0f - decision(fresnel_dielectric(min(cos_mo, 1.0f), across(above))) : through;
+      const float through = transmittance(k, above, cos_mo, cos_mi);
+      const float chance = even() ? through : 1.0f - decision(reflectance(min(cos_mo, 1.0f), above));
       both.pdf[k] = 2.0f * common * n_i * n_i * chance / (wo.z + root_o);
       return common * n_o * n_o * through * masking * cos_i;
     });
@@ -167,7 +181,11 @@ struct RoughInterface {
   }
 
   // 1 - F by the cosines on both sides, without the difference.
-  static float transmittance(float n_o, float cos_o, float n_i, float cos_i) {
+  float transmittance(int k, bool above, float cos_o, float cos_i) const {
+    if (film.exists()) [[unlikely]]
+      return film_transmittance(film, k, ior[k], above ? cos_o : cos_i, above ? cos_i : cos_o);
+    const float n_o = above ? 1.0f : ior[k];
+    const float n_i = above ? ior[k] : 1.0f;
     const float s = n_o * cos_o + n_i * cos_i;
     const float p = n_i * cos_o + n_o * cos_i;
     return 2.0f * (n_o * n_i) * (cos_o * cos_i) * (1.0f / (s * s) + 1.0f / (p * p));
