@@ -44,7 +44,8 @@ class Param:
 class Type:
     """A type of a family: ``params`` hold its own parameters and the common ones of its family.
 
-    ``reads_uv``: a texture that needs shapes with texture coordinates.
+    ``reads_uv``: a texture that needs shapes with texture coordinates; ``reads_colors``: one that needs meshes with
+    vertex colours.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Type:
     params: tuple[Param, ...]
     keeps: tuple[str, ...] = ()
     reads_uv: bool = False
+    reads_colors: bool = False
 
     def sets(self) -> dict[str, dict[str, list[Param]]]:
         """The "exactly one of" sets: set name -> alternative -> its parameters."""
@@ -110,6 +112,7 @@ def _family(name: str, family: dict[str, Any]) -> Family:
             (*(_param(param) for param in entry["params"]), *common),
             tuple(entry.get("keeps", ())),
             bool(entry.get("reads_uv", False)),
+            bool(entry.get("reads_colors", False)),
         )
         for entry in family.get("types", ())
     }

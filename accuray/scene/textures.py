@@ -8,7 +8,7 @@ from typing import Any
 
 from accuray.scene.errors import Where
 from accuray.scene.plain import choice, quantity
-from accuray.scene.schema import Param, Schema
+from accuray.scene.schema import Param, Schema, Type
 from accuray.scene.scope import Scope
 
 CHANNELS = ("red", "green", "blue", "alpha")
@@ -96,23 +96,37 @@ def check_opacity(materials: Objects, where: Where) -> None:
             )
 
 
-def check_coordinates(textures: Objects, materials: Objects, shapes: Objects, schema: Schema, where: Where) -> None:
-    """A texture that is laid out by texture coordinates needs shapes that have them. Raises SceneError."""
+def check_vertices(textures: Objects, materials: Objects, shapes: Objects, schema: Schema, where: Where) -> None:
+    """Shapes have at their vertices what the textures of their materials read there. Raises SceneError."""
     types = schema.family("texture").types
-    laid_out = {
-        name: (key, use.texture)
-        for name, table in materials.items()
-        for key, use in uses_of(table)
-        if types[textures[use.texture]["type"]].reads_uv
-    }
     for name, shape in shapes.items():
         for member in shape.get("of") or (name,):
             material = shape["material"] or shapes[member]["material"]
-            if material in laid_out and shapes[member]["type"] == "mesh" and shapes[member]["uvs"] is None:
-                key, texture = laid_out[material]
-                via = f' (shown by "{name}")' if member != name else ""
-                user = f"materials.{material}.{key}"
-                raise where.child("shapes", member).error(
-                    f'has no texture coordinates{via}, which the texture "{texture}" of {user} needs',
-                    allowed="a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)",
-                )
+            for key, use in uses_of(materials[material]):
+                lack = _lack(types[textures[use.texture]["type"]], shapes[member])
+                if lack is not None:
+                    via = f' (shown by "{name}")' if member != name else ""
+                    user = f'the texture "{use.texture}" of materials.{material}.{key}'
+                    raise where.child("shapes", member).error(
+                        f"has no {lack[0]}{via}, which {user} needs", allowed=lack[1]
+                    )
+
+
+def _lack(texture: Type, shape: dict[str, Any]) -> tuple[str, str] | None:
+    """What the shape lacks that the texture reads, and what has it."""
+    if texture.reads_uv and shape["type"] == "mesh" and shape["uvs"] is None:
+        return "texture coordinates", "a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)"
+    if texture.reads_colors and shape.get("colors") is None:
+        return "vertex colours", "a mesh with colors (`v x y z r g b` in OBJ, `red`, `green` and `blue` in PLY)"
+    return None
+
+
+def check_bumps(textures: Objects, materials: Objects, schema: Schema, where: Where) -> None:
+    """Vertex colours make no heights: their slope would be one for each triangle. Raises SceneError."""
+    types = schema.family("texture").types
+    for name, material in materials.items():
+        use = material["bump_map"]
+        if use is not None and types[textures[use.texture]["type"]].reads_colors:
+            raise where.child("materials", name, "bump_map").error(
+                "cannot come from vertex colours", value=use.texture, allowed="a texture of another type"
+            )

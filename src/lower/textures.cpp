@@ -3,13 +3,11 @@
 #include <stdexcept>
 
 #include "kernels/math/functions.h"
+#include "lower/srgb.h"
 
 namespace accuray {
 
 namespace {
-
-// Linear value of an sRGB one, IEC 61966-2-1.
-double from_srgb(double x) { return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4); }
 
 UvMap uv_map(const Values& values) {
   const auto scale = vec_of(values, "uv_scale");

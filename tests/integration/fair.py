@@ -110,6 +110,7 @@ FAIR = {
     "textured": Fair(
         "the lamp 2.5 times as wide and long, 1/6.25 as bright", partial(enlarged, lamp="lamp", factor=2.5)
     ),
+    "textured-light": Fair("the room glows", partial(glowing, material="stone", radiance=0.3)),
     "zoo": Fair("as it is: its lamps are large"),
 }
 

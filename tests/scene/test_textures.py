@@ -55,7 +55,7 @@ def test_a_parameter_holds_what_it_takes_from_the_texture() -> None:
 @pytest.mark.parametrize(
     ("material", "key", "complaint"),
     [
-        ({"emission": {"texture": "t"}}, "materials.m.emission", "takes no texture"),
+        ({"emission_sides": {"texture": "t"}}, "materials.m.emission_sides", "takes no texture"),
         ({"reflectance": {"texture": "T"}}, "materials.m.reflectance.texture", 'did you mean "t"'),
         ({"reflectance": {"texture": 3}}, "materials.m.reflectance.texture", "is not a known texture"),
         ({"reflectance": {"texture": "t", "scale": -1}}, "materials.m.reflectance.scale", "out of range"),
