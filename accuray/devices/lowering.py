@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import fsum
+from math import fsum, inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -153,6 +153,8 @@ class _Lowering:
         texture = self.textures[use.texture]
         if use.channel:
             channel = CHANNELS.index(use.channel) if use.channel in CHANNELS else 0
+            if param.kind == "spectrum":
+                return self.builder.textured_index(texture, channel, use.scale, param.min, param.max or inf)
             return core.TexturedReal(texture, channel, use.scale)
         self._need_rgb_table()
         if param.role == "emission":

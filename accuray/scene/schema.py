@@ -13,7 +13,9 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Param:
-    """One parameter. ``min``, ``max`` and ``default`` are in the documented ``unit``."""
+    """One parameter. ``min``, ``max`` and ``default`` are in the documented ``unit``; ``untextured`` says why it takes no
+    texture where one might be expected.
+    """
 
     name: str
     kind: str
@@ -26,6 +28,7 @@ class Param:
     role: str = ""
     group: str = ""
     texturable: bool = False
+    untextured: str = ""
     animatable: bool = False
     doc: str = ""
 

@@ -22,7 +22,7 @@ _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
 
 @dataclass(frozen=True)
 class TextureUse:
-    """A parameter's value that a texture gives: its colour, or for a number one of its channels, times ``scale``.
+    """A parameter's value that a texture gives: its colour, or for a number or an index one of its channels, times ``scale``.
 
     ``channel`` is "" for a colour, "map" for a normal or bump map.
     """
@@ -40,12 +40,14 @@ def names_texture(value: Any) -> bool:
 def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUse:
     """The reference ``{ texture = "NAME", scale = 1, channel = "red" }``. Raises SceneError."""
     if not param.texturable:
-        raise where.error(f"takes no texture, only a {param.kind}", value=value)
+        reason = f": {param.untextured}" if param.untextured else f", only a {param.kind}"
+        raise where.error(f"takes no texture{reason}", value=value)
     if isinstance(value, TextureUse):
         value = {key: item for key, item in vars(value).items() if item not in ("", MAP)}
     elif not isinstance(value, dict):
         value = {"texture": value}
-    keys = ("texture", "scale", "channel") if param.kind == "float" else ("texture", "scale")
+    number = param.kind == "float" or param.role == "index"
+    keys = ("texture", "scale", "channel") if number else ("texture", "scale")
     for key in value:
         if key not in keys:
             raise where.child(key).unknown(key, "key of a textured parameter", keys)
@@ -53,7 +55,7 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
     if not isinstance(name, str) or name not in known:
         raise where.child("texture").unknown(name, "texture", known)
     scale = quantity(_SCALE, value.get("scale", _SCALE.default), where.child("scale"))
-    if param.kind != "float":
+    if not number:
         return TextureUse(name, scale, MAP if param.kind == "reference" else "")
     return TextureUse(name, scale, choice(_CHANNEL, value.get("channel", _CHANNEL.default), where.child("channel")))
 

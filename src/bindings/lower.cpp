@@ -142,6 +142,12 @@ void bind_textures(nb::class_<SceneBuilder>& builder) {
           },
           "texture"_a, "scale"_a)
       .def(
+          "textured_index",
+          [](SceneBuilder& b, uint32_t texture, uint32_t channel, double scale, double low, double high) {
+            return b.spectra().textured_index(texture, channel, scale, low, high);
+          },
+          "texture"_a, "channel"_a, "scale"_a, "low"_a, "high"_a)
+      .def(
           "textured_emission",
           [](SceneBuilder& b, uint32_t texture, double scale) { return b.spectra().textured_emission(texture, scale); },
           "texture"_a, "scale"_a);

@@ -48,6 +48,7 @@ nb::dict describe(const Param& param) {
   d["role"] = param.role;
   d["group"] = param.group;
   d["texturable"] = param.texturable;
+  d["untextured"] = param.untextured;
   d["animatable"] = param.animatable;
   d["doc"] = param.doc;
   return d;

@@ -117,6 +117,11 @@ uint32_t SceneBuilder::add_interior(const Values& values) {
   }
   InteriorRecord interior{std::get<SpectrumRef>(value_of(values, "ior")), {none}, 0.0f, 0};
   interior.priority = static_cast<uint32_t>(number_of(values, "priority"));
+  if (interior.priority != 0 && spectra_.is_textured(interior.ior)) {
+    throw BadParameter("ior",
+                       "is a texture, which gives an index on the surface and none inside: allowed is a texture only "
+                       "with priority = 0, where the index is relative to whatever is around");
+  }
   if (coloured) {
     interior.color = std::get<SpectrumRef>(value_of(values, "transmission_color"));
     interior.per_depth = static_cast<float>(1.0 / number_of(values, "transmission_depth"));
@@ -328,6 +333,7 @@ Block SceneBuilder::finish() {
     root_.rgb_nodes = store(spectra_.rgb_nodes());
     root_.rgb_coefficients = store(spectra_.rgb_table());
   }
+  root_.any_mipmap = textures_.any_mipmap() ? 1u : 0u;
   RootWriter writer;
   root_.materials = writer.append(materials_);
   root_.interiors = writer.append(interiors_);

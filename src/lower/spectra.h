@@ -38,6 +38,8 @@ class SpectrumPool {
 
   // A reflectance that a texture gives, times `scale`; it makes the RGB table part of the scene.
   SpectrumRef textured_reflectance(uint32_t texture, double scale);
+  // An index that a channel of a texture gives, times `scale` and held within the limits.
+  SpectrumRef textured_index(uint32_t texture, uint32_t channel, double scale, double low, double high);
   // A light of a texture's colours under D65, times `scale`, likewise. For value() it is that of the colour white.
   SpectrumRef textured_emission(uint32_t texture, double scale);
 

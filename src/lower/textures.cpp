@@ -50,6 +50,18 @@ void TexturePool::show(ImageTexture& texture, const PictureUse& use) {
   texture.decode = none;
   if (use.srgb && picture.format == TexelFormat::u8) texture.decode = srgb_table(0xffu);
   if (use.srgb && picture.format == TexelFormat::u16) texture.decode = srgb_table(0xffffu);
+  if (texture.filter == TexelFilter::mipmap) texture.mipmaps = mipmaps_of(use, texture.decode);
+}
+
+Mipmaps TexturePool::mipmaps_of(const PictureUse& use, uint32_t decode) {
+  const auto found = mipmaps_.find({use.picture, use.srgb});
+  if (found != mipmaps_.end()) return found->second;
+  const Picture& picture = pictures_.at(use.picture).first;
+  std::vector<float> texels = make_mipmaps(picture, decode == none ? nullptr : spectra_.tables().data() + decode);
+  const uint32_t count = mipmap_count(picture.width, picture.height);
+  Mipmaps mipmaps{{0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(texels.size())}, count};
+  bulk_.push_back(section_of(std::move(texels)));
+  return mipmaps_[{use.picture, use.srgb}] = mipmaps;
 }
 
 uint32_t TexturePool::add(std::string_view type, const Values& values, std::optional<PictureUse> use) {

@@ -12,7 +12,9 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
   const Spectrum before =
       material.interior == none ? lanes(1.0f) : exterior_ior(scene, material.interior, exterior, path.wl);
   if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before};
-  return {scene, path.wl, texture_point(scene, path.hit, surface), before};
+  ShadingPoint point{scene, path.wl, texture_point(scene, path.hit, surface), before};
+  point.where.footprint = footprint_on(surface, path);
+  return point;
 }
 inline Frame shading_frame(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
                            const ShadingPoint& p, const Path& path) {

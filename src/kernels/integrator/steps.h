@@ -173,6 +173,7 @@ inline bool scatter(const MaterialRecord& material, const Surface& surface, cons
   if ((sample.lobe & lobe_transmission) != 0) cross_surface(material, surface, path);
   path.eta_scale *= sample.eta_scale;
   path.bsdf_pdf = sample.pdf;
+  widen_cone(surface.point, sample.pdf, path);
   path.origin = surface.point;
   path.origin_normal = surface.shading;
   path.ray.origin = offset_origin(surface.point, surface.error, surface.normal, wi);

@@ -13,6 +13,7 @@ enum class SpectrumForm : uint32_t {
   lit_sigmoid,  // the same times a table at 1 nm: an RGB light under a white
   // From here on the spectrum differs from point to point: read by textured_spectrum() in texture/list.h.
   textured,          // scale * the texture number `table`, as a reflectance
+  textured_index,    // scale * channel `count` of the texture number `table`, within c0 and c1, at all wavelengths
   textured_emission  // scale * the texture number `count` under the table's white; here: of the texture's white
 };
 
@@ -69,6 +70,7 @@ inline Spectrum evaluate(const SpectrumRecord& s, const float* tables, const Wav
     case SpectrumForm::lit_sigmoid:
       return sigmoid_of(s, wl) * lookup(tables + s.table, wl) * s.scale;
     case SpectrumForm::textured:
+    case SpectrumForm::textured_index:
     case SpectrumForm::constant:
       break;
   }

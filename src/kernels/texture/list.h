@@ -50,11 +50,18 @@ inline Spectrum textured_emission(const SceneView& scene, const SpectrumRecord& 
   return colour * lookup(scene.tables + s.table, wl) * (2.0f * largest * s.scale);
 }
 
+// Index of refraction of a texture: one of its channels as a number, at all wavelengths.
+inline Spectrum textured_index(const SceneView& scene, const SpectrumRecord& s, const TexturePoint& p) {
+  const TextureValue value = texture_value(scene, s.table, p);
+  return lanes(min(max(s.c0, value[static_cast<int>(s.count)] * s.scale), s.c1));
+}
+
 // A spectrum that a texture gives.
 ACCURAY_NOINLINE inline Spectrum textured_spectrum(const SceneView& scene, const SpectrumRecord& s, TexturePoint p,
                                                    Wavelengths wl) {
-  return s.form == SpectrumForm::textured_emission ? textured_emission(scene, s, p, wl)
-                                                   : textured_reflectance(scene, s, p, wl);
+  if (s.form == SpectrumForm::textured_emission) return textured_emission(scene, s, p, wl);
+  if (s.form == SpectrumForm::textured_index) return textured_index(scene, s, p);
+  return textured_reflectance(scene, s, p, wl);
 }
 
 // A textured number, held within its parameter's range.
