@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the pictures in scenes/textures: bricks in colour, their normal map, and a leaf with its outline as alpha.
+"""Makes the pictures in scenes/textures: bricks in colour, their normal map, a leaf with its outline as alpha, and a
+window of coloured glass.
 
     python tools/make_textures.py
 
@@ -68,6 +69,33 @@ def leaf(size: int = 128) -> FloatArray:
     return np.concatenate([green, np.maximum(blade, stem)[..., np.newaxis]], axis=-1)
 
 
+def window(width: int = 160, height: int = 240) -> FloatArray:
+    """A pointed window (height, width, 3) in sRGB: a sun of glass over hills, cut by lead, in a black wall."""
+    y, x = np.mgrid[0:height, 0:width] + 0.5
+    u, v = (x - 0.5 * width) / (0.5 * width), (height - y) / height
+    rng = np.random.default_rng(12)
+    sites = np.stack([rng.uniform(0, width, 90), rng.uniform(0, height, 90)], axis=-1)
+    away = np.hypot(x[..., np.newaxis] - sites[:, 0], y[..., np.newaxis] - sites[:, 1])
+    cell, two = away.argmin(axis=-1), np.sort(away, axis=-1)
+    lead = two[..., 1] - two[..., 0]
+    sun = np.hypot(x - 0.5 * width, y - 0.38 * height) / width
+    hills = v - (0.22 + 0.07 * np.sin(4.2 * u + 0.6))
+    region = np.where(sun < 0.17, 0, np.where(sun < 0.31, 1, np.where(hills < 0.0, 3, 2)))
+    lead = np.minimum(lead, np.where(region < 1, 9.0, lead))
+    for distance in (
+        width * np.abs(sun - 0.17),
+        width * np.abs(sun - 0.31),
+        height * np.abs(hills) + 99.0 * (sun < 0.31),
+    ):
+        lead = np.minimum(lead, 1.4 * distance)
+    base = np.array([[0.98, 0.80, 0.30], [0.93, 0.42, 0.12], [0.13, 0.30, 0.78], [0.12, 0.52, 0.25]])[region]
+    tone = rng.uniform(-1.0, 1.0, (90, 3))[cell] * np.array([0.12, 0.12, 0.10])
+    arch = np.minimum(v < 0.62, 1) + ((v >= 0.62) & (np.abs(u) < 2.0 * np.cos(0.5 * np.pi * (v - 0.62) / 0.38) - 1.0))
+    glass = np.clip(base + tone, 0.0, 1.0) * np.clip(0.8 * (lead - 1.0), 0.03, 1.0)[..., np.newaxis]
+    inside: FloatArray = glass * ((arch > 0) & (np.abs(u) < 0.96) & (v > 0.02))[..., np.newaxis]
+    return inside
+
+
 def write(name: str, pixels: FloatArray) -> None:
     """Stores numbers from 0 to 1 with 8 bits."""
     stored: NDArray[Any] = np.floor(pixels * 255.0 + 0.5).astype(np.uint8)
@@ -86,6 +114,7 @@ def main() -> None:
     write("bricks.png", colours(height, brick))
     write("bricks-normal.png", normals(height))
     write("leaf.png", leaf())
+    write("window.png", window())
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import fsum
+from math import fsum, inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,13 +38,14 @@ class Triangles(NamedTuple):
     """The triangles that a shape is rendered as, before its transform: front sides run counter-clockwise.
 
     positions: float32 (N, 3), metres. faces: uint32 (M, 3), indices of positions. normals: float32 (N, 3), unit, or
-    None for flat shading. uvs: float32 (N, 2), or None.
+    None for flat shading. uvs: float32 (N, 2), or None. colors: float32 (N, 4), linear Rec.709 and alpha, or None.
     """
 
     positions: NDArray[np.float32]
     faces: NDArray[np.uint32]
     normals: NDArray[np.float32] | None
     uvs: NDArray[np.float32] | None
+    colors: NDArray[np.float32] | None = None
 
 
 def triangles(scene: Scene, shape: str) -> Triangles:
@@ -75,6 +76,8 @@ class _Lowering:
         self.builder = core.SceneBuilder(self.cmf, self.d65)
         self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
+        kinds = schemas.current().family("texture").types
+        self._reads_colors = any(kinds[texture["type"]].reads_colors for texture in scene.textures.values())
         self._spectra: dict[Spectrum, Any] = {}
         self._pictures: dict[tuple[str, tuple[int, ...], bytes], int] = {}
         self.textures: dict[str, int] = {}
@@ -121,7 +124,7 @@ class _Lowering:
             if param.kind == "enum":
                 value = param.choices.index(value)
             elif isinstance(value, TextureUse):
-                value = self._textured(value)
+                value = self._textured(param, value)
             elif param.kind == "spectrum":
                 value = self._spectrum(value)
             elif param.kind == "vec":
@@ -143,15 +146,19 @@ class _Lowering:
             self._pictures[key] = self.builder.add_picture(pixels)
         return self._pictures[key]
 
-    def _textured(self, use: TextureUse) -> Any:
+    def _textured(self, param: schemas.Param, use: TextureUse) -> Any:
         """The builder's form of a value that a texture gives."""
         from accuray._core import lower as core
 
         texture = self.textures[use.texture]
         if use.channel:
             channel = CHANNELS.index(use.channel) if use.channel in CHANNELS else 0
+            if param.kind == "spectrum":
+                return self.builder.textured_index(texture, channel, use.scale, param.min, param.max or inf)
             return core.TexturedReal(texture, channel, use.scale)
         self._need_rgb_table()
+        if param.role == "emission":
+            return self.builder.textured_emission(texture, use.scale)
         return self.builder.textured_reflectance(texture, use.scale)
 
     def _add_shapes(self) -> None:
@@ -177,7 +184,10 @@ class _Lowering:
         material, transform = self.materials[table["material"]], _matrix(table["transform"])
         number: int
         if table["type"] == "mesh" or table["type"] in self.solids:
-            number = self.builder.add_mesh(*self.triangles(name, table), transform, material, table["prototype"])
+            mesh = self.triangles(name, table)
+            if not self._reads_colors:
+                mesh = mesh._replace(colors=None)
+            number = self.builder.add_mesh(*mesh, transform, material, table["prototype"])
         else:
             values = self._values("shape", table)
             number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
@@ -196,17 +206,20 @@ class _Lowering:
         """Arrays of a mesh; those that came from no file are repaired first, as readers do."""
         from accuray._core import mesh as core
 
-        positions, faces, normals, uvs = (table[key] for key in ("positions", "faces", "normals", "uvs"))
+        positions, faces, normals, uvs, colors = (
+            table[key] for key in ("positions", "faces", "normals", "uvs", "colors")
+        )
         if table["file"] is None:
-            mesh = core.repair(positions, faces, normals, uvs)
+            mesh = core.repair(positions, faces, normals, uvs, colors)
             positions, faces, normals, uvs = mesh.positions, mesh.indices, mesh.normals, mesh.uvs
+            colors = mesh.colors
             if mesh.report["nonfinite_triangles"] or mesh.report["degenerate_triangles"]:
                 self.reports[name] = mesh.report
         if table["shading"] == "flat":
             normals = None
         elif table["shading"] == "smooth" and normals is None:
             normals = core.smooth_normals(positions, faces)
-        return Triangles(positions, faces, normals, uvs)
+        return Triangles(positions, faces, normals, uvs, colors)
 
     def _add_light(self, light: Values) -> None:
         emission = next(v for v in light.values() if isinstance(v, Spectrum))

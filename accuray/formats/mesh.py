@@ -29,5 +29,6 @@ def _arrays(mesh: Any) -> dict[str, Any]:
         "faces": mesh.indices,
         "normals": mesh.normals,
         "uvs": mesh.uvs,
+        "colors": mesh.colors,
         "report": mesh.report,
     }

@@ -24,19 +24,22 @@ if TYPE_CHECKING:
 FACES = "faces"
 _Array = TypeVar("_Array", bound="npt.NDArray[Any]")
 MAX_ROWS = 1 << 31
-_ROLE = re.compile(r"([A-Z])x(\d+)")
+_ROLE = re.compile(r"([A-Z])x(\d+)(?: or \1x(\d+))?")
 
 
-def row_width(param: Param) -> int:
-    """Columns of an array parameter with a role such as "Nx3"."""
+def row_widths(param: Param) -> tuple[int, ...]:
+    """Columns that an array parameter with a role such as "Nx3" or "Nx3 or Nx4" may have."""
     match = _ROLE.fullmatch(param.role)
     if match is None:
         raise ValueError(f"parameter table: array {param.name} has the unknown role '{param.role}'")
-    return int(match[2])
+    return tuple(int(width) for width in match.groups()[1:] if width is not None)
 
 
 def parse_array(param: Param, value: Any, where: Where) -> FloatArray | IndexArray:
-    """float32 (N, width), positions in metres; or for faces uint32 (M, 3) triangles. Raises SceneError."""
+    """float32 (N, width), positions in metres; or for faces uint32 (M, 3) triangles. Raises SceneError.
+
+    A last column that may be left out is filled with 1.
+    """
     return _triangles(value, where) if param.role == FACES else _rows(param, value, where)
 
 
@@ -71,24 +74,27 @@ def scale_to_metres(array: npt.NDArray[Any], length_unit: str) -> npt.NDArray[An
 def _rows(param: Param, value: Any, where: Where) -> FloatArray:
     import numpy as np
 
-    width = row_width(param)
-    shape = f"rows of {width} numbers"
+    widths = row_widths(param)
+    shape = f"rows of {' or '.join(map(str, widths))} numbers"
     if isinstance(value, np.ndarray):
-        if value.dtype.kind not in "fiu":
-            raise where.error(f"is an array of {value.dtype}", allowed="an array of numbers")
-        array = value.astype(np.float64)
+        if value.dtype.kind not in ("fiu" if len(widths) == 1 else "f"):
+            raise where.error(f"is an array of {value.dtype}", allowed="an array of floating-point numbers")
+        array, width = value.astype(np.float64), value.shape[-1] if value.ndim == 2 else 0
     else:
+        width = len(value[0]) if value and hasattr(value, "__getitem__") and hasattr(value[0], "__len__") else widths[0]
+        width = width if width in widths else widths[0]
         _check_rows(value, width, where, shape)
         try:
             array = np.array(value, dtype=np.float64).reshape(-1, width)
         except OverflowError:
             raise where.error("has too large a number", allowed=shape) from None
-    if array.ndim != 2 or array.shape[1] != width:
-        raise where.error(f"has the shape {array.shape}", allowed=f"(N, {width})")
+    if array.ndim != 2 or width not in widths:
+        raise where.error(f"has the shape {array.shape}", allowed=" or ".join(f"(N, {width})" for width in widths))
     if len(array) > MAX_ROWS:
         raise where.error(f"has {len(array)} rows", allowed=f"up to {MAX_ROWS}")
     if param.unit != "m":
         _check_finite(array, where)
+        array = np.pad(array, ((0, 0), (0, widths[-1] - width)), constant_values=1.0)
     else:
         array = scale_to_metres(array, where.source.length_unit)
     with np.errstate(over="ignore"):

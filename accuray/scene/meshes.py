@@ -15,9 +15,9 @@ from accuray.scene.errors import Where
 from accuray.scene.schema import Type
 
 MeshReader = Callable[[Path], dict[str, Any]]
-"""Reads a file into arrays by the names of the parameters: positions float32 (N, 3), faces uint32 (M, 3), normals
-(N, 3) or None, uvs (N, 2) or None; and "report", a dict of what was left out or made up. Raises ValueError with file
-and line for a wrong file."""
+"""Reads a file into arrays by the names of the parameters: positions float32 (N, 3), faces uint32 (M, 3), and each or
+None normals (N, 3), uvs (N, 2), colors (N, 4), linear; and "report", a dict of what was left out or made up. Raises
+ValueError with file and line for a wrong file."""
 
 _readers: dict[str, MeshReader] = {}
 

@@ -40,7 +40,7 @@ def settle(materials: dict[str, Table], where: Where) -> None:
             if m["emission"] is not None:
                 raise at.child("emission_luminance").error("cannot go with `emission`", allowed="one of them")
             white = data.LUMINOUS_EFFICACY * math.fsum(data.observer().y)
-            m["emission"] = m["emission_color"].times(m["emission_luminance"] / white)
+            m["emission"] = _times(m["emission_color"], m["emission_luminance"] / white)
         if m["base_metalness"] != 1.0 and m["specular_weight"] != 0.0 and not _is_one(m["specular_color"]):
             raise at.child("specular_color").error(
                 "tints the reflection of a dielectric, which reflects all colours alike",

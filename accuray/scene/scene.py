@@ -20,7 +20,7 @@ from accuray.scene.paths import Confinement
 from accuray.scene.scope import Scope
 from accuray.scene.shapes import check_shapes
 from accuray.scene.spectra import check_unused
-from accuray.scene.textures import check_coordinates, check_films, check_opacity, settle_colour_spaces
+from accuray.scene.textures import check_bumps, check_films, check_opacity, check_vertices, settle_colour_spaces
 from accuray.scene.units import LENGTH_UNITS
 
 FORMAT_VERSION = 1
@@ -98,7 +98,8 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     settle_colour_spaces(textures, materials, top.child("textures"))
     check_opacity(materials, top)
     check_films(materials, top)
-    check_coordinates(textures, materials, shapes, schema, top)
+    check_bumps(textures, materials, schema, top)
+    check_vertices(textures, materials, shapes, schema, top)
     _check_spectra(scope)
     camera = _single("camera", data, top.child("camera"), scope)
     film["exposure"] = resolve_exposure(film, camera, top.child("film"))

@@ -13,7 +13,10 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Param:
-    """One parameter. ``min``, ``max`` and ``default`` are in the documented ``unit``."""
+    """One parameter. ``min``, ``max`` and ``default`` are in the documented ``unit``.
+
+    ``untextured`` says why it takes no texture where one might be expected.
+    """
 
     name: str
     kind: str
@@ -26,6 +29,7 @@ class Param:
     role: str = ""
     group: str = ""
     texturable: bool = False
+    untextured: str = ""
     animatable: bool = False
     doc: str = ""
 
@@ -44,7 +48,8 @@ class Param:
 class Type:
     """A type of a family: ``params`` hold its own parameters and the common ones of its family.
 
-    ``reads_uv``: a texture that needs shapes with texture coordinates.
+    ``reads_uv``: a texture that needs shapes with texture coordinates; ``reads_colors``: one that needs meshes with
+    vertex colours.
     """
 
     name: str
@@ -52,6 +57,7 @@ class Type:
     params: tuple[Param, ...]
     keeps: tuple[str, ...] = ()
     reads_uv: bool = False
+    reads_colors: bool = False
 
     def sets(self) -> dict[str, dict[str, list[Param]]]:
         """The "exactly one of" sets: set name -> alternative -> its parameters."""
@@ -110,6 +116,7 @@ def _family(name: str, family: dict[str, Any]) -> Family:
             (*(_param(param) for param in entry["params"]), *common),
             tuple(entry.get("keeps", ())),
             bool(entry.get("reads_uv", False)),
+            bool(entry.get("reads_colors", False)),
         )
         for entry in family.get("types", ())
     }

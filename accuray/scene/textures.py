@@ -9,7 +9,7 @@ from typing import Any
 from accuray.scene.composition import all_parts
 from accuray.scene.errors import Where
 from accuray.scene.plain import choice, quantity
-from accuray.scene.schema import Param, Schema
+from accuray.scene.schema import Param, Schema, Type
 from accuray.scene.scope import Scope
 
 CHANNELS = ("red", "green", "blue", "alpha")
@@ -23,7 +23,7 @@ _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
 
 @dataclass(frozen=True)
 class TextureUse:
-    """A parameter's value that a texture gives: its colour, or for a number one of its channels, times ``scale``.
+    """A parameter's value that a texture gives, times ``scale``: its colour, or for a number or index a channel.
 
     ``scale`` is in the renderer's unit where the number has one (metres of a thickness). ``channel`` is "" for a
     colour, "map" for a normal or bump map.
@@ -42,14 +42,16 @@ def names_texture(value: Any) -> bool:
 def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUse:
     """The reference ``{ texture = "NAME", scale = 1, channel = "red" }``. Raises SceneError."""
     if not param.texturable:
-        raise where.error(f"takes no texture, only a {param.kind}", value=value)
+        reason = f": {param.untextured}" if param.untextured else f", only a {param.kind}"
+        raise where.error(f"takes no texture{reason}", value=value)
     unit = param.unit if param.kind == "float" else ""
     if isinstance(value, TextureUse):
         unit = ""
         value = {key: item for key, item in vars(value).items() if item not in ("", MAP)}
     elif not isinstance(value, dict):
         value = {"texture": value}
-    keys = ("texture", "scale", "channel") if param.kind == "float" else ("texture", "scale")
+    number = param.kind == "float" or param.role == "index"
+    keys = ("texture", "scale", "channel") if number else ("texture", "scale")
     for key in value:
         if key not in keys:
             raise where.child(key).unknown(key, "key of a textured parameter", keys)
@@ -57,7 +59,7 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
     if not isinstance(name, str) or name not in known:
         raise where.child("texture").unknown(name, "texture", known)
     scale = quantity(replace(_SCALE, unit=unit), value.get("scale", _SCALE.default), where.child("scale"))
-    if param.kind != "float":
+    if not number:
         return TextureUse(name, scale, MAP if param.kind == "reference" else "")
     return TextureUse(name, scale, choice(_CHANNEL, value.get("channel", _CHANNEL.default), where.child("channel")))
 
@@ -109,23 +111,38 @@ def check_films(materials: Objects, where: Where) -> None:
             )
 
 
-def check_coordinates(textures: Objects, materials: Objects, shapes: Objects, schema: Schema, where: Where) -> None:
-    """A texture that is laid out by texture coordinates needs shapes that have them. Raises SceneError."""
+def check_vertices(textures: Objects, materials: Objects, shapes: Objects, schema: Schema, where: Where) -> None:
+    """Shapes have at their vertices what the textures of their materials read there. Raises SceneError."""
     types = schema.family("texture").types
-    laid_out = {
-        name: (f"{part}.{key}", use.texture)
-        for name in materials
-        for part in all_parts(materials, name, schema)
-        for key, use in uses_of(materials[part])
-        if types[textures[use.texture]["type"]].reads_uv
-    }
     for name, shape in shapes.items():
         for member in shape.get("of") or (name,):
             material = shape["material"] or shapes[member]["material"]
-            if material in laid_out and shapes[member]["type"] == "mesh" and shapes[member]["uvs"] is None:
-                user, texture = laid_out[material]
-                via = f' (shown by "{name}")' if member != name else ""
-                raise where.child("shapes", member).error(
-                    f'has no texture coordinates{via}, which the texture "{texture}" of materials.{user} needs',
-                    allowed="a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)",
-                )
+            uses = ((part, *use) for part in all_parts(materials, material, schema) for use in uses_of(materials[part]))
+            for part, key, use in uses:
+                lack = _lack(types[textures[use.texture]["type"]], shapes[member])
+                if lack is not None:
+                    via = f' (shown by "{name}")' if member != name else ""
+                    user = f'the texture "{use.texture}" of materials.{part}.{key}'
+                    raise where.child("shapes", member).error(
+                        f"has no {lack[0]}{via}, which {user} needs", allowed=lack[1]
+                    )
+
+
+def _lack(texture: Type, shape: dict[str, Any]) -> tuple[str, str] | None:
+    """What the shape lacks that the texture reads, and what has it."""
+    if texture.reads_uv and shape["type"] == "mesh" and shape["uvs"] is None:
+        return "texture coordinates", "a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)"
+    if texture.reads_colors and shape.get("colors") is None:
+        return "vertex colours", "a mesh with colors (`v x y z r g b` in OBJ, `red`, `green` and `blue` in PLY)"
+    return None
+
+
+def check_bumps(textures: Objects, materials: Objects, schema: Schema, where: Where) -> None:
+    """Vertex colours make no heights: their slope would be one for each triangle. Raises SceneError."""
+    types = schema.family("texture").types
+    for name, material in materials.items():
+        use = material["bump_map"]
+        if use is not None and types[textures[use.texture]["type"]].reads_colors:
+            raise where.child("materials", name, "bump_map").error(
+                "cannot come from vertex colours", value=use.texture, allowed="a texture of another type"
+            )

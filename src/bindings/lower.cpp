@@ -29,18 +29,21 @@ std::span<const double> span_of(const Column<double>& array) { return {array.dat
 using OptionalMatrix = std::optional<Matrix>;
 
 MeshArrays to_arrays(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
-                     const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs) {
+                     const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
+                     const std::optional<Rows<float, 4>>& colors) {
   const size_t vertices = positions.shape(0);
-  if ((normals && normals->shape(0) != vertices) || (uvs && uvs->shape(0) != vertices)) {
-    throw std::invalid_argument("normals and uvs need one row for each position");
+  if ((normals && normals->shape(0) != vertices) || (uvs && uvs->shape(0) != vertices) ||
+      (colors && colors->shape(0) != vertices)) {
+    throw std::invalid_argument("normals, uvs and colors need one row for each position");
   }
-  MeshArrays arrays{to_vector(positions), to_vector(indices), {}, {}};
+  MeshArrays arrays{to_vector(positions), to_vector(indices), {}, {}, {}};
   for (const uint32_t index : arrays.indices) {
     if (index >= vertices)
       throw std::invalid_argument("a face names vertex " + std::to_string(index) + " of " + std::to_string(vertices));
   }
   if (normals) arrays.normals = to_vector(*normals);
   if (uvs) arrays.uvs = to_vector(*uvs);
+  if (colors) arrays.colors = to_vector(*colors);
   return arrays;
 }
 
@@ -137,6 +140,16 @@ void bind_textures(nb::class_<SceneBuilder>& builder) {
           [](SceneBuilder& b, uint32_t texture, double scale) {
             return b.spectra().textured_reflectance(texture, scale);
           },
+          "texture"_a, "scale"_a)
+      .def(
+          "textured_index",
+          [](SceneBuilder& b, uint32_t texture, uint32_t channel, double scale, double low, double high) {
+            return b.spectra().textured_index(texture, channel, scale, low, high);
+          },
+          "texture"_a, "channel"_a, "scale"_a, "low"_a, "high"_a)
+      .def(
+          "textured_emission",
+          [](SceneBuilder& b, uint32_t texture, double scale) { return b.spectra().textured_emission(texture, scale); },
           "texture"_a, "scale"_a);
 }
 
@@ -160,11 +173,12 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
           "add_mesh",
           [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
              const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
-             const OptionalMatrix& transform, uint32_t material, bool prototype) {
-            return b.add_mesh(to_arrays(positions, indices, normals, uvs), transform, material, prototype);
+             const std::optional<Rows<float, 4>>& colors, const OptionalMatrix& transform, uint32_t material,
+             bool prototype) {
+            return b.add_mesh(to_arrays(positions, indices, normals, uvs, colors), transform, material, prototype);
           },
-          "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "transform"_a.none(), "material"_a,
-          "prototype"_a)
+          "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(), "transform"_a.none(),
+          "material"_a, "prototype"_a)
       .def(
           "add_shape",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, const OptionalMatrix& transform,

@@ -2,6 +2,7 @@
 #include "mesh/mesh.h"
 
 #include "bindings/bindings.h"
+#include "lower/srgb.h"
 #include "mesh/checks.h"
 #include "mesh/error.h"
 #include "mesh/normals.h"
@@ -14,7 +15,7 @@ namespace {
 
 // A mesh as numpy arrays that own the reader's memory.
 struct PyMesh {
-  nb::object positions, indices, normals, uvs;
+  nb::object positions, indices, normals, uvs, colors;
   nb::dict report;
 };
 
@@ -26,17 +27,30 @@ nb::dict describe(const mesh::MeshReport& report) {
   d["nonfinite_vertices"] = report.nonfinite_vertices;
   d["generated_normals"] = report.generated_normals;
   d["missing_uvs"] = report.missing_uvs;
+  d["missing_colors"] = report.missing_colors;
   d["unknown"] = report.unknown;
   d["first_unknown"] = report.first_unknown;
   return d;
 }
 
 PyMesh to_python(mesh::MeshData data) {
-  PyMesh result{to_numpy(std::move(data.positions), 3), to_numpy(std::move(data.indices), 3), nb::none(), nb::none(),
+  PyMesh result{to_numpy(std::move(data.positions), 3),
+                to_numpy(std::move(data.indices), 3),
+                nb::none(),
+                nb::none(),
+                nb::none(),
                 describe(data.report)};
   if (!data.normals.empty()) result.normals = to_numpy(std::move(data.normals), 3);
   if (!data.uvs.empty()) result.uvs = to_numpy(std::move(data.uvs), 2);
+  if (!data.colors.empty()) result.colors = to_numpy(std::move(data.colors), 4);
   return result;
+}
+
+// Alpha stays as it is.
+void undo_srgb(std::vector<float>& colors) {
+  for (size_t i = 0; i < colors.size(); ++i) {
+    if (i % 4 != 3) colors[i] = static_cast<float>(from_srgb(static_cast<double>(colors[i])));
+  }
 }
 
 template <mesh::MeshData (*Read)(const std::string&)>
@@ -45,17 +59,20 @@ PyMesh read(const std::string& path) {
   {
     const nb::gil_scoped_release release;
     data = Read(path);
+    if (data.srgb_colors) undo_srgb(data.colors);
   }
   return to_python(std::move(data));
 }
 
 PyMesh repair(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
-              const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs) {
+              const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
+              const std::optional<Rows<float, 4>>& colors) {
   mesh::MeshData data;
   data.positions = to_vector(positions);
   data.indices = to_vector(indices);
   if (normals) data.normals = to_vector(*normals);
   if (uvs) data.uvs = to_vector(*uvs);
+  if (colors) data.colors = to_vector(*colors);
   mesh::require_indices_in_range(data, "<arrays>");
   {
     const nb::gil_scoped_release release;
@@ -78,10 +95,11 @@ void bind_mesh(nb::module_& module) {
       .def_ro("indices", &PyMesh::indices)
       .def_ro("normals", &PyMesh::normals)
       .def_ro("uvs", &PyMesh::uvs)
+      .def_ro("colors", &PyMesh::colors, "Linear red, green, blue and alpha.")
       .def_ro("report", &PyMesh::report);
   m.def("read_obj", &read<&mesh::read_obj>, "path"_a, "Reads a Wavefront OBJ file.");
   m.def("read_ply", &read<&mesh::read_ply>, "path"_a, "Reads a PLY file.");
-  m.def("repair", &repair, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(),
+  m.def("repair", &repair, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(),
         "Drops and counts what cannot be rendered.");
   m.def("smooth_normals", &smooth_normals, "positions"_a, "indices"_a, "One unit normal per vertex.");
 }

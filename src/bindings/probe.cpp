@@ -94,8 +94,10 @@ nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vect
   return nb::make_tuple(to_numpy(std::move(value), 4), to_numpy(std::move(pdf), 0));
 }
 
-// Values of a texture (N, 4) at points: texture coordinates (N, 2), and positions (N, 3) in the shape's own space.
-nb::object texture_values(const LoadedScene& scene, uint32_t texture, const Rows<float, 2>& uv, const Vectors& points) {
+// Values of a texture (N, 4) at points: texture coordinates (N, 2), and positions (N, 3) in the shape's own space. Each
+// stands for a surface of diameter `footprint`, where the coordinates are lengths.
+nb::object texture_values(const LoadedScene& scene, uint32_t texture, const Rows<float, 2>& uv, const Vectors& points,
+                          float footprint) {
   require_rows(uv.shape(0), points.shape(0));
   const SceneView& view = scene.accel.view();
   if (texture >= view.root->textures.count) throw std::invalid_argument("there is no such texture");
@@ -104,9 +106,29 @@ nb::object texture_values(const LoadedScene& scene, uint32_t texture, const Rows
     TexturePoint at = middle;
     at.uv = {uv.data()[2 * i], uv.data()[2 * i + 1]};
     at.point = row(points, i);
+    at.footprint = footprint;
     put(values, texture_value(view, texture, at));
   }
   return to_numpy(std::move(values), 4);
+}
+
+// Diameters of what the first sample of each pixel (x, y) stands for on the surface that it meets, m; 0 where it meets
+// none.
+nb::object footprints(const LoadedScene& scene, uint32_t width, uint32_t height, const Rows<uint32_t, 2>& pixels) {
+  const SceneView& view = scene.accel.view();
+  const EmbreeAccel accel(scene.accel);
+  const Request request{{}, 0, 1, width, height};
+  std::vector<float> diameters;
+  for (size_t i = 0; i < pixels.shape(0); ++i) {
+    const uint32_t x = pixels.data()[2 * i];
+    const uint32_t y = pixels.data()[2 * i + 1];
+    const Sampler sampler = sampler_for(request, pixel_key(request, x, y, 0), 0);
+    Path path = generate(view, request, x, y, sampler, carried({500, 550, 600, 650}), sampler.draw(camera_set));
+    intersect(view, accel, path);
+    const bool met = path.hit.geometry != none;
+    diameters.push_back(met ? footprint_on(surface_at(view, path.ray, path.hit), path) : 0.0f);
+  }
+  return to_numpy(std::move(diameters), 0);
 }
 
 nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference,
@@ -297,7 +319,8 @@ void bind_probe(nb::module_& module) {
   nb::module_ probe = module.def_submodule("probe", "Parts of the kernels over arrays, for tests and study.");
   probe.def("bsdf_sample", &bsdf_sample, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "u"_a, "seed"_a = 0);
   probe.def("bsdf_eval", &bsdf_eval, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "wi"_a, "seed"_a = 0);
-  probe.def("texture_values", &texture_values, "scene"_a, "texture"_a, "uv"_a, "points"_a);
+  probe.def("texture_values", &texture_values, "scene"_a, "texture"_a, "uv"_a, "points"_a, "footprint"_a = 0.0f);
+  probe.def("footprints", &footprints, "scene"_a, "width"_a, "height"_a, "pixels"_a);
   probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);
   probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);
   probe.def("light_names", &light_names, "scene"_a);

@@ -50,6 +50,7 @@ nb::dict describe(const Param& param) {
   d["role"] = param.role;
   d["group"] = param.group;
   d["texturable"] = param.texturable;
+  d["untextured"] = param.untextured;
   d["animatable"] = param.animatable;
   d["doc"] = param.doc;
   return d;
@@ -85,6 +86,7 @@ nb::dict family(TypeList<Ts...>, nb::list common) {
     d["params"] = params_of<T>();
     d["keeps"] = laws_of<T>();
     if constexpr (requires { T::reads_uv; }) d["reads_uv"] = T::reads_uv;
+    if constexpr (requires { T::reads_colors; }) d["reads_colors"] = T::reads_colors;
     types.append(d);
   };
   (add(Type<Ts>{}), ...);

@@ -81,6 +81,13 @@ struct LightRecord {
   uint32_t both_sides;
 };
 
+// Which surface a light is: where on it a sampled point lies decides what a textured one emits.
+struct LightPlace {
+  uint32_t geometry;
+  uint32_t instance;   // none: not instanced
+  uint32_t primitive;  // a rectangle's is its first triangle, and the next one its second
+};
+
 struct Root {
   uint32_t version;
   uint32_t environment;  // index of the constant environment light; none: black
@@ -88,14 +95,16 @@ struct Root {
   uint32_t any_opacity;     // some material lets rays through
   uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
-  uint32_t reserved[2];
+  uint32_t any_mipmap;  // some texture asks how much of it a ray stands for
+  uint32_t reserved;
   Tagged camera, filter, integrator;
   Slice<MaterialRecord> materials;
   Slice<InteriorRecord> interiors;
   Slice<GeometryRecord> geometries;
   Slice<InstanceRecord> instances;
   Slice<LightRecord> lights;
-  Slice<float> light_cdf;  // running sums of selection probabilities, lights + 1 entries
+  Slice<LightPlace> light_places;  // of every light; empty if no emission is textured
+  Slice<float> light_cdf;          // running sums of selection probabilities, lights + 1 entries
   Slice<uint32_t> light_of_primitive;
   Slice<uint32_t> lights_of_instance;
   Slice<SpectrumRecord> spectra;
@@ -117,6 +126,7 @@ struct SceneView {
   const GeometryRecord* geometries;
   const InstanceRecord* instances;
   const LightRecord* lights;
+  const LightPlace* light_places;
   const float* light_cdf;
   const uint32_t* light_of_primitive;
   const uint32_t* lights_of_instance;
@@ -150,6 +160,7 @@ struct SceneView {
     view.geometries = view.at(root.geometries);
     view.instances = view.at(root.instances);
     view.lights = view.at(root.lights);
+    view.light_places = view.at(root.light_places);
     view.light_cdf = view.at(root.light_cdf);
     view.light_of_primitive = view.at(root.light_of_primitive);
     view.lights_of_instance = view.at(root.lights_of_instance);

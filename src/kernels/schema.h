@@ -30,7 +30,8 @@ struct Param {
   const char* role = "";     // reflectance, emission, index; material, shape; shape of an array
   const char* group = "";    // "set:alternative": exactly one alternative of a set is given; "set?:...": at most one
   bool required = false;
-  bool texturable = false;  // takes a texture; a real's member is then a RealRef
+  bool texturable = false;      // takes a texture; a real's member is then a RealRef
+  const char* untextured = "";  // why it takes none, where one might be expected
   bool animatable = false;
   uint32_t member = no_member;  // byte offset in the type's struct
 };

@@ -6,6 +6,7 @@
 #include "kernels/bsdf/composition.h"
 #include "kernels/bsdf/list.h"
 #include "kernels/texture/opacity.h"
+#include "lower/emission.h"
 
 namespace accuray {
 
@@ -158,6 +159,11 @@ uint32_t SceneBuilder::add_interior(const Values& values) {
   }
   InteriorRecord interior{std::get<SpectrumRef>(value_of(values, "ior")), {none}, 0.0f, 0};
   interior.priority = static_cast<uint32_t>(number_of(values, "priority"));
+  if (interior.priority != 0 && spectra_.is_textured(interior.ior)) {
+    throw BadParameter("ior",
+                       "is a texture, which gives an index on the surface and none inside: allowed is a texture only "
+                       "with priority = 0, where the index is relative to whatever is around");
+  }
   if (coloured) {
     interior.color = std::get<SpectrumRef>(value_of(values, "transmission_color"));
     interior.per_depth = static_cast<float>(1.0 / number_of(values, "transmission_depth"));
@@ -183,19 +189,19 @@ uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t li
   return number;
 }
 
-uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material) {
+uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place) {
   if (material.emission.index == none) return none;
   const auto first = static_cast<uint32_t>(light_of_primitive_.size());
   const auto lights =
-      lights_.add_mesh(arrays.positions, arrays.indices, material.emission, material.emits_both_sides != 0);
+      lights_.add_mesh(arrays.positions, arrays.indices, material.emission, material.emits_both_sides != 0, place);
   light_of_primitive_.insert(light_of_primitive_.end(), lights.begin(), lights.end());
   return first;
 }
 
 template <class L>
-uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& material) {
+uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& material, LightPlace place) {
   if (material.emission.index == none) return none;
-  light_of_primitive_.push_back(lights_.add(light, material.emission, material.emits_both_sides != 0));
+  light_of_primitive_.push_back(lights_.add(light, material.emission, material.emits_both_sides != 0, place));
   return static_cast<uint32_t>(light_of_primitive_.size() - 1);
 }
 
@@ -214,19 +220,22 @@ uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& 
   for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
     bounds.grow(Vec3{arrays.positions[i], arrays.positions[i + 1], arrays.positions[i + 2]});
   }
-  const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material));
+  const LightPlace place = {static_cast<uint32_t>(geometries_.size()), none, 0};
+  const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material), place);
   Mesh mesh{};
   mesh.positions = store(std::move(arrays.positions));
   mesh.indices = store(std::move(arrays.indices));
   mesh.normals = store(std::move(arrays.normals));
   mesh.uvs = store(std::move(arrays.uvs));
+  mesh.colors = store(std::move(arrays.colors));
   return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, bounds, prototype);
 }
 
 template <class Shape>
 uint32_t SceneBuilder::add_analytic(const Shape& shape, uint32_t material, bool prototype) {
   const Vec3 radius = {shape.radius, shape.radius, shape.radius};
-  const uint32_t lights = prototype ? none : add_surface_light(light_of(shape), materials_.at(material));
+  const LightPlace place = {static_cast<uint32_t>(geometries_.size()), none, 0};
+  const uint32_t lights = prototype ? none : add_surface_light(light_of(shape), materials_.at(material), place);
   const Bounds bounds = {shape.center - radius, shape.center + radius};
   return add_geometry({tag_of<Shape>(Shapes{}), pool_.add(shape)}, material, lights, bounds, prototype);
 }
@@ -263,7 +272,8 @@ uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecor
   for (uint32_t g = instance.first; g < instance.first + instance.count; ++g) {
     const GeometryRecord& geometry = geometries_.at(g);
     scene_bounds_.grow(bounds_.at(g).moved(matrix));
-    const uint32_t lights = copied_lights(matrix, geometry, materials_.at(material.value_or(geometry.material)));
+    const uint32_t lights = copied_lights(matrix, materials_.at(material.value_or(geometry.material)),
+                                          {g, static_cast<uint32_t>(instances_.size()), 0});
     any = any || lights != none;
     lights_of_instance_.push_back(lights);
   }
@@ -272,15 +282,15 @@ uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecor
   return none;
 }
 
-uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const GeometryRecord& geometry,
-                                     const MaterialRecord& material) {
+uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place) {
   if (material.emission.index == none) return none;
+  const GeometryRecord& geometry = geometries_.at(place.geometry);
   const uint32_t* parameters = pool_.words().data() + geometry.shape.offset;
   if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
-    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Sphere*>(parameters))), material);
+    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Sphere*>(parameters))), material, place);
   }
   if (geometry.shape.tag == tag_of<Disk>(Shapes{})) {
-    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Disk*>(parameters))), material);
+    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Disk*>(parameters))), material, place);
   }
   const Mesh& mesh = *reinterpret_cast<const Mesh*>(parameters);
   const auto* positions = reinterpret_cast<const float*>(bulk_.at(mesh.positions.section - 1).data);
@@ -289,7 +299,7 @@ uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const GeometryRecord&
   world.positions.assign(positions, positions + mesh.positions.count);
   world.indices.assign(indices, indices + mesh.indices.count);
   move_mesh(matrix, world);
-  return add_mesh_lights(world, material);
+  return add_mesh_lights(world, material, place);
 }
 
 void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission) {
@@ -328,7 +338,31 @@ void SceneBuilder::set_film(double step, bool hide_environment) {
   root_.hide_environment = hide_environment ? 1u : 0u;
 }
 
+std::vector<const uint8_t*> SceneBuilder::section_bases() const {
+  std::vector<const uint8_t*> bases{nullptr};
+  for (const Section& section : bulk_) bases.push_back(section.data);
+  return bases;
+}
+
+SceneView SceneBuilder::draft(const std::vector<const uint8_t*>& sections) const {
+  SceneView view{};
+  view.sections = sections.data();
+  view.geometries = geometries_.data();
+  view.instances = instances_.data();
+  view.lights = lights_.records().data();
+  view.light_places = lights_.places().data();
+  view.spectra = spectra_.records().data();
+  view.tables = spectra_.tables().data();
+  view.textures = textures_.records().data();
+  view.parameters = pool_.words().data();
+  return view;
+}
+
 Block SceneBuilder::finish() {
+  if (lights_.any_textured()) {
+    const std::vector<const uint8_t*> sections = section_bases();
+    lights_.set_shares(texture_shares(draft(sections), static_cast<uint32_t>(lights_.records().size())));
+  }
   const std::vector<float> lambda_cdf = lights_.lambda_cdf(scene_radius());
   std::vector<float> response(size_t{4} * lambda_nodes);
   const std::vector<double>& cmf = spectra_.colour().cmf;
@@ -341,12 +375,14 @@ Block SceneBuilder::finish() {
     root_.rgb_nodes = store(spectra_.rgb_nodes());
     root_.rgb_coefficients = store(spectra_.rgb_table());
   }
+  root_.any_mipmap = textures_.any_mipmap() ? 1u : 0u;
   RootWriter writer;
   root_.materials = writer.append(materials_);
   root_.interiors = writer.append(interiors_);
   root_.geometries = writer.append(geometries_);
   root_.instances = writer.append(instances_);
   root_.lights = writer.append(lights_.records());
+  if (lights_.any_textured()) root_.light_places = writer.append(lights_.places());
   root_.light_cdf = writer.append(lights_.power_cdf(scene_radius()));
   root_.light_of_primitive = writer.append(light_of_primitive_);
   root_.lights_of_instance = writer.append(lights_of_instance_);

@@ -21,12 +21,13 @@
 
 namespace accuray {
 
-// Bulk arrays of a mesh; empty normals or uvs: none.
+// Bulk arrays of a mesh; empty normals, uvs or colors: none.
 struct MeshArrays {
   std::vector<float> positions;
   std::vector<uint32_t> indices;
   std::vector<float> normals;
   std::vector<float> uvs;
+  std::vector<float> colors;
 };
 
 class SceneBuilder {
@@ -64,20 +65,23 @@ class SceneBuilder {
   MaterialRecord material_with(const Values& header, std::optional<SpectrumRef> emission);
   uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds, bool prototype);
   // The lights of an instance's copy of a geometry, or none.
-  uint32_t copied_lights(const Matrix& matrix, const GeometryRecord& geometry, const MaterialRecord& material);
+  uint32_t copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place);
   // What fills a body of a material with these values; none if it is no dielectric.
   uint32_t add_interior(const Values& values);
   // A bulk array in a section of its own; an empty one stays nowhere.
   template <class T>
   Slice<T> store(std::vector<T> values);
   // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
-  uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material);
+  uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place);
   template <class Shape>
   uint32_t add_analytic(const Shape& shape, uint32_t material, bool prototype);
   template <class L>
-  uint32_t add_surface_light(const L& light, const MaterialRecord& material);
+  uint32_t add_surface_light(const L& light, const MaterialRecord& material, LightPlace place);
   uint32_t instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material);
   float scene_radius() const;
+  // The scene as far as textures read it; good until something is added.
+  SceneView draft(const std::vector<const uint8_t*>& sections) const;
+  std::vector<const uint8_t*> section_bases() const;
 
   SpectrumPool spectra_;
   ParameterPool pool_;

@@ -1,5 +1,6 @@
 #include "lower/lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -56,26 +57,32 @@ std::optional<QuadLight> rectangle_of(std::span<const float> positions, const ui
 }  // namespace
 
 std::vector<uint32_t> LightTable::add_mesh(std::span<const float> positions, std::span<const uint32_t> indices,
-                                           SpectrumRef emission, bool both_sides) {
+                                           SpectrumRef emission, bool both_sides, LightPlace place) {
   const size_t triangles = indices.size() / 3;
   std::vector<uint32_t> light_of(triangles);
   for (size_t t = 0; t < triangles; ++t) {
     const uint32_t* i = &indices[3 * t];
+    place.primitive = static_cast<uint32_t>(t);
     const Vec3 a = vertex(positions, i[0]);
     const Vec3 b = vertex(positions, i[1]);
     const Vec3 c = vertex(positions, i[2]);
     if (t + 1 < triangles) {
       if (const std::optional<QuadLight> quad = rectangle_of(positions, i)) {
-        light_of[t] = light_of[t + 1] = add(*quad, emission, both_sides);
+        light_of[t] = light_of[t + 1] = add(*quad, emission, both_sides, place);
         ++t;
         continue;
       }
     }
     const Vec3 normal = cross(b - a, c - a);
     const TriangleLight light{a, b, c, normalize(normal), triangle_error({a, b, c, 0, 0, 0}), 0.5f * length(normal)};
-    light_of[t] = add(light, emission, both_sides);
+    light_of[t] = add(light, emission, both_sides, place);
   }
   return light_of;
+}
+
+bool LightTable::any_textured() const {
+  return std::any_of(records_.begin(), records_.end(),
+                     [&](const LightRecord& record) { return spectra_.is_textured(record.emission); });
 }
 
 double LightTable::power_factor(const LightRecord& record, float scene_radius) const {
@@ -99,7 +106,8 @@ std::vector<double> LightTable::weights(float scene_radius) const {
         value += spectra_.value(record.emission, 360.0 + i) * response_at(cmf, i);
       }
     }
-    result.push_back(value * power_factor(record, scene_radius));
+    const double share = shares_.empty() ? 1.0 : shares_[result.size()];
+    result.push_back(value * share * power_factor(record, scene_radius));
   }
   return result;
 }

@@ -13,17 +13,23 @@ class LightTable {
  public:
   LightTable(ParameterPool& pool, const SpectrumPool& spectra) : pool_(pool), spectra_(spectra) {}
 
+  // `place`: of a light that is a surface.
   template <class L>
-  uint32_t add(const L& light, SpectrumRef emission, bool both_sides) {
+  uint32_t add(const L& light, SpectrumRef emission, bool both_sides, LightPlace place = {none, none, 0}) {
     records_.push_back({{tag_of<L>(Lights{}), pool_.add(light)}, emission, both_sides ? 1u : 0u});
+    places_.push_back(place);
     return static_cast<uint32_t>(records_.size() - 1);
   }
   // Adds the lights of an emissive mesh, in world space, and returns the light of each triangle. Neighbouring triangles
   // that form a rectangle become one light.
   std::vector<uint32_t> add_mesh(std::span<const float> positions, std::span<const uint32_t> indices,
-                                 SpectrumRef emission, bool both_sides);
+                                 SpectrumRef emission, bool both_sides, LightPlace place);
 
   const std::vector<LightRecord>& records() const { return records_; }
+  const std::vector<LightPlace>& places() const { return places_; }
+  bool any_textured() const;
+  // What of each light's power its texture leaves: see texture_shares() in emission.h.
+  void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
   // Running sums of the probabilities with which lights are chosen: in proportion to their power as the sensor sees it.
   std::vector<float> power_cdf(float scene_radius) const;
   // Running sums over the 470 cells of 1 nm: sensor response times what the lights emit.
@@ -36,6 +42,8 @@ class LightTable {
   ParameterPool& pool_;
   const SpectrumPool& spectra_;
   std::vector<LightRecord> records_;
+  std::vector<LightPlace> places_;
+  std::vector<double> shares_;  // one for each light, or none
 };
 
 std::vector<uint32_t> lambda_guide(const std::vector<float>& cdf);

@@ -152,6 +152,18 @@ SpectrumRef SpectrumPool::textured_reflectance(uint32_t texture, double scale) {
   return add({SpectrumForm::textured, static_cast<float>(scale), 0, 0, 0, texture, 0, 0});
 }
 
+SpectrumRef SpectrumPool::textured_index(uint32_t texture, uint32_t channel, double scale, double low, double high) {
+  constexpr double most = 3e38;
+  return add({SpectrumForm::textured_index, static_cast<float>(scale), static_cast<float>(std::clamp(low, -most, most)),
+              static_cast<float>(std::clamp(high, -most, most)), 0, texture, channel, 0});
+}
+
+SpectrumRef SpectrumPool::textured_emission(uint32_t texture, double scale) {
+  if (rgb_nodes_.empty()) throw std::logic_error("the RGB table was not set");
+  any_textured_ = true;
+  return add({SpectrumForm::textured_emission, static_cast<float>(scale), 0, 0, 0, d65_table(), texture, 1});
+}
+
 uint32_t SpectrumPool::add_table(const std::vector<float>& values) {
   const auto first = static_cast<uint32_t>(tables_.size());
   tables_.insert(tables_.end(), values.begin(), values.end());

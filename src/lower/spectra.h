@@ -38,6 +38,10 @@ class SpectrumPool {
 
   // A reflectance that a texture gives, times `scale`; it makes the RGB table part of the scene.
   SpectrumRef textured_reflectance(uint32_t texture, double scale);
+  // An index that a channel of a texture gives, times `scale` and held within the limits.
+  SpectrumRef textured_index(uint32_t texture, uint32_t channel, double scale, double low, double high);
+  // A light of a texture's colours under D65, times `scale`, likewise. For value() it is that of the colour white.
+  SpectrumRef textured_emission(uint32_t texture, double scale);
 
   // Position of further values in the tables.
   uint32_t add_table(const std::vector<float>& values);
@@ -47,7 +51,7 @@ class SpectrumPool {
 
   const std::vector<SpectrumRecord>& records() const { return records_; }
   const std::vector<float>& tables() const { return tables_; }
-  bool is_textured(SpectrumRef ref) const { return records_[ref.index].form == SpectrumForm::textured; }
+  bool is_textured(SpectrumRef ref) const { return accuray::is_textured(records_[ref.index].form); }
   bool any_textured() const { return any_textured_; }
   const std::vector<float>& rgb_nodes() const { return rgb_nodes_; }
   const std::vector<float>& rgb_table() const { return rgb_coefficients_; }

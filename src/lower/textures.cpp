@@ -3,13 +3,11 @@
 #include <stdexcept>
 
 #include "kernels/math/functions.h"
+#include "lower/srgb.h"
 
 namespace accuray {
 
 namespace {
-
-// Linear value of an sRGB one, IEC 61966-2-1.
-double from_srgb(double x) { return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4); }
 
 UvMap uv_map(const Values& values) {
   const auto scale = vec_of(values, "uv_scale");
@@ -52,6 +50,18 @@ void TexturePool::show(ImageTexture& texture, const PictureUse& use) {
   texture.decode = none;
   if (use.srgb && picture.format == TexelFormat::u8) texture.decode = srgb_table(0xffu);
   if (use.srgb && picture.format == TexelFormat::u16) texture.decode = srgb_table(0xffffu);
+  if (texture.filter == TexelFilter::mipmap) texture.mipmaps = mipmaps_of(use, texture.decode);
+}
+
+Mipmaps TexturePool::mipmaps_of(const PictureUse& use, uint32_t decode) {
+  const auto found = mipmaps_.find({use.picture, use.srgb});
+  if (found != mipmaps_.end()) return found->second;
+  const Picture& picture = pictures_.at(use.picture).first;
+  std::vector<float> texels = make_mipmaps(picture, decode == none ? nullptr : spectra_.tables().data() + decode);
+  const uint32_t count = mipmap_count(picture.width, picture.height);
+  Mipmaps mipmaps{{0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(texels.size())}, count};
+  bulk_.push_back(section_of(std::move(texels)));
+  return mipmaps_[{use.picture, use.srgb}] = mipmaps;
 }
 
 uint32_t TexturePool::add(std::string_view type, const Values& values, std::optional<PictureUse> use) {

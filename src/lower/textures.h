@@ -8,17 +8,11 @@
 
 #include "kernels/texture/list.h"
 #include "lower/block.h"
+#include "lower/mipmaps.h"
 #include "lower/parameters.h"
 #include "lower/spectra.h"
 
 namespace accuray {
-
-// A picture's texels as somebody else keeps them: rows from the top, channels next to each other.
-struct Picture {
-  Section texels;
-  uint32_t width, height, channels;
-  TexelFormat format;
-};
 
 // How a texture's picture is read.
 struct PictureUse {
@@ -37,8 +31,11 @@ class TexturePool {
   uint32_t add(std::string_view type, const Values& values, std::optional<PictureUse> use);
 
   const std::vector<Tagged>& records() const { return records_; }
+  bool any_mipmap() const { return !mipmaps_.empty(); }
 
  private:
+  // The mipmaps of a picture, which all textures that show it so share.
+  Mipmaps mipmaps_of(const PictureUse& use, uint32_t decode);
   void show(ImageTexture& texture, const PictureUse& use);
   uint32_t srgb_table(uint32_t most);
 
@@ -46,8 +43,9 @@ class TexturePool {
   SpectrumPool& spectra_;
   std::vector<Section>& bulk_;
   std::vector<Tagged> records_;
-  std::vector<std::pair<Picture, uint32_t>> pictures_;  // with the section of each
-  std::map<uint32_t, uint32_t> srgb_tables_;            // by the largest integer
+  std::vector<std::pair<Picture, uint32_t>> pictures_;    // with the section of each
+  std::map<uint32_t, uint32_t> srgb_tables_;              // by the largest integer
+  std::map<std::pair<uint32_t, bool>, Mipmaps> mipmaps_;  // by picture and curve
 };
 
 }  // namespace accuray

@@ -76,6 +76,7 @@ void drop_vertices(MeshData& mesh) {
   renumber(mesh.positions, 3, number, count);
   renumber(mesh.normals, 3, number, count);
   renumber(mesh.uvs, 2, number, count);
+  renumber(mesh.colors, 4, number, count);
   for (uint32_t& index : mesh.indices) index = number[index];
 }
 
@@ -105,6 +106,15 @@ void repair_uvs(MeshData& mesh) {
   }
 }
 
+void repair_colors(MeshData& mesh) {
+  for (size_t i = 0; i < mesh.colors.size(); i += 4) {
+    float* color = &mesh.colors[i];
+    if (std::all_of(color, color + 4, [](float x) { return std::isfinite(x); })) continue;
+    std::fill_n(color, 4, 1.0f);
+    ++mesh.report.missing_colors;
+  }
+}
+
 }  // namespace
 
 void require_indices_in_range(const MeshData& mesh, std::string_view name) {
@@ -123,6 +133,7 @@ void repair(MeshData& mesh) {
   drop_vertices(mesh);
   repair_normals(mesh);
   repair_uvs(mesh);
+  repair_colors(mesh);
 }
 
 }  // namespace accuray::mesh

@@ -16,7 +16,7 @@ void require_indices_in_range(const MeshData& mesh, std::string_view name);
 //   so equal and exactly collinear vertices go, while slivers and tiny triangles of any true area stay;
 // - if a vertex is not finite, removes it and all vertices that no triangle uses;
 // - scales normals to unit length; replaces those that are zero or not finite by smooth normals (see normals.h);
-// - sets uvs that are not finite to (0, 0).
+// - sets uvs that are not finite to (0, 0), and colours that are not finite to opaque white.
 void repair(MeshData& mesh);
 
 }  // namespace accuray::mesh

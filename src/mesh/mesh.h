@@ -18,6 +18,7 @@ struct MeshReport {
   uint64_t nonfinite_vertices = 0;    // removed with those triangles
   uint64_t generated_normals = 0;     // vertices whose normal was missing, zero or not finite
   uint64_t missing_uvs = 0;           // vertices whose uv was missing or not finite: set to (0, 0)
+  uint64_t missing_colors = 0;        // vertices whose colour was missing or not finite: set to white
   uint64_t unknown = 0;               // OBJ: lines with an unknown keyword; PLY: properties that are not used
   std::string first_unknown;          // the first of these, as text with its place
 };
@@ -27,6 +28,8 @@ struct MeshData {
   std::vector<float> positions;   // 3 N
   std::vector<float> normals;     // 3 N, or empty: the file has none
   std::vector<float> uvs;         // 2 N, or empty: the file has none
+  std::vector<float> colors;      // 4 N: red, green, blue and alpha from 0 to 1; or empty: the file has none
+  bool srgb_colors = false;       // the colours, but not alpha, are stored with the sRGB curve
   std::vector<uint32_t> indices;  // 3 M; the front side of a triangle is the counter-clockwise one
   MeshReport report;
 };

@@ -98,13 +98,25 @@ class ObjReader {
   }
 
   void read_position(Words& words) {
-    size_t count = read_numbers(words, "v", 3, 6, positions_);
+    std::array<float, 6> value{};
+    size_t count = read_numbers(words, "v", 3, 6, positions_, value);
     if (count == 5) fail("v", "", "has 5 numbers", "3, 4 or 6 numbers");
+    if (count == 6 || !colors_.empty()) add_color(count == 6 ? &value[3] : nullptr);
   }
 
-  // Appends the first `attribute.width` of `low` to `high` numbers (0 where there are fewer); returns how many.
-  size_t read_numbers(Words& words, std::string_view keyword, size_t low, size_t high, Attribute& attribute) {
+  // The colour of the latest position, null if it has none; those before the first colour have none.
+  void add_color(const float* color) {
+    colors_.resize(3 * (positions_.count() - 1), std::numeric_limits<float>::quiet_NaN());
+    for (size_t i = 0; i < 3; ++i) colors_.push_back(color ? color[i] : std::numeric_limits<float>::quiet_NaN());
+  }
+
+  void read_numbers(Words& words, std::string_view keyword, size_t low, size_t high, Attribute& attribute) {
     std::array<float, 6> value{};
+    read_numbers(words, keyword, low, high, attribute, value);
+  }
+  // Appends the first `attribute.width` of `low` to `high` numbers (0 where there are fewer); returns how many.
+  size_t read_numbers(Words& words, std::string_view keyword, size_t low, size_t high, Attribute& attribute,
+                      std::array<float, 6>& value) {
     size_t count = 0;
     while (count < high && !words.at_end()) {
       if (!words.number(value[count])) fail(keyword, words.peek(), "is no number", "a number such as -1.5e-3");
@@ -218,10 +230,22 @@ class ObjReader {
   void gather() {
     table_ = {};
     latest_ = {};
+    gather_colors();
     mesh_.positions = gather(positions_, &Corner::position, 0.0f);
     mesh_.normals = gather(normals_, &Corner::normal, std::numeric_limits<float>::quiet_NaN());
     mesh_.uvs = gather(uvs_, &Corner::uv, std::numeric_limits<float>::quiet_NaN());
     corners_ = {};
+  }
+
+  void gather_colors() {
+    if (colors_.empty()) return;
+    mesh_.srgb_colors = true;
+    mesh_.colors.reserve(4 * corners_.size());
+    for (const Corner& corner : corners_) {
+      const float* color = &colors_[3 * size_t{corner.position}];
+      mesh_.colors.insert(mesh_.colors.end(), {color[0], color[1], color[2], 1.0f});
+    }
+    colors_ = {};
   }
 
   // The values of one list per vertex, `missing` where a corner has none; empty if no corner has any.
@@ -254,6 +278,7 @@ class ObjReader {
   Attribute positions_{"position", 3};
   Attribute uvs_{"uv", 2};
   Attribute normals_{"normal", 3};
+  std::vector<float> colors_;    // 3 per position; empty before the first one that has a colour
   std::vector<Corner> corners_;  // the distinct ones: corner i becomes vertex i
   IndexTable table_;
   std::vector<uint32_t> latest_;  // per position, the vertex it was used as last; kNone if unused

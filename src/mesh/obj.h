@@ -10,7 +10,7 @@ namespace accuray::mesh {
 
 // Reads the polygons of a file as one mesh; throws ReadError with the line, the offending text and what was allowed.
 //
-// v   3, 4 or 6 numbers; w or a colour is ignored.
+// v   3, 4 or 6 numbers; w is ignored, a colour is kept as one with the sRGB curve, as MeshLab and Blender write it.
 // vt  1 to 3 numbers, of which u and v are kept (v is 0 if absent).
 // vn  3 numbers.
 // f   at least 3 corners v, v/t, v//n or v/t/n; an index counts from 1, or back from the latest if negative. A positive
@@ -18,9 +18,9 @@ namespace accuray::mesh {
 // Ignored: g, o, s, usemtl, mtllib, p, l. Other keywords are counted in the report.
 //
 // Corners with equal v, t and n share a vertex; vertices come in the order in which faces use them. If some corners
-// have a normal and others have none, those others get smooth normals; likewise a missing uv becomes (0, 0). Both are
-// counted. A `\` at the end of a line joins it with the next, except in a comment. Numbers may be nan, inf or too
-// large: see repair() in checks.h for what happens to their triangles.
+// have a normal and others have none, those others get smooth normals; likewise a missing uv becomes (0, 0), a missing
+// colour white. All are counted. A `\` at the end of a line joins it with the next, except in a comment. Numbers may be
+// nan, inf or too large: see repair() in checks.h for what happens to their triangles.
 MeshData read_obj(const std::string& path);
 
 // The same from memory; `name` stands for the file in messages.

@@ -29,6 +29,15 @@ TEST(Obj, Triangle) {
   EXPECT_EQ(mesh.report.triangles_read, 1u);
 }
 
+TEST(Obj, ColorsOfVerticesAreKept) {
+  MeshData mesh = read_obj_text("v 0 0 0\nv 1 0 0 1 .5 .25\nv 0 1 0 0 2 nan\nv 9 9 9\nf 2 3 1\n");
+  expect_valid(mesh);
+  EXPECT_EQ(mesh.colors, (Floats{1, .5f, .25f, 1, 1, 1, 1, 1, 1, 1, 1, 1}));
+  EXPECT_TRUE(mesh.srgb_colors);
+  EXPECT_EQ(mesh.report.missing_colors, 2u);
+  EXPECT_TRUE(read_obj_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").colors.empty());
+}
+
 TEST(Obj, PolygonIsAFanFromItsFirstCorner) {
   EXPECT_EQ(read_obj_text(kSquare + "f 1 2 3 4\n").indices, (Indices{0, 1, 2, 0, 2, 3}));
   EXPECT_EQ(read_obj_text(kSquare + "v -1 .5 0\nf 1 2 3 4 5\n").indices, (Indices{0, 1, 2, 0, 2, 3, 0, 3, 4}));

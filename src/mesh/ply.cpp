@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "mesh/checks.h"
@@ -33,8 +34,10 @@ std::string text_of(double value) {
   return {digits.data(), end};
 }
 
-// Where the values of a vertex go: 0 to 2 position, 3 to 5 normal, 6 and 7 uv.
-constexpr size_t kSlots = 8;
+// Where the values of a vertex go: 0 to 2 position, 3 to 5 normal, 6 and 7 uv, 8 to 11 colour and alpha.
+constexpr size_t kSlots = 12;
+constexpr size_t kColor = 8;
+constexpr size_t kAlpha = 11;
 constexpr size_t kSkip = kSlots;
 
 template <class Values>
@@ -89,6 +92,31 @@ class PlyReader {
          {Pair{"u", "v"}, Pair{"s", "t"}, Pair{"texture_u", "texture_v"}, Pair{"texture_s", "texture_t"}}) {
       if (!has_uvs_) has_uvs_ = claim({pair[0], pair[1]}, 6);
     }
+    find_colors();
+  }
+
+  // Red, green and blue of one type that says what their white is, and alpha if it is of that type too.
+  void find_colors() {
+    const std::array<std::string_view, 4> names = {"red", "green", "blue", "alpha"};
+    size_t first = vertex_->find(names[0]);
+    if (first == slots_.size()) return;
+    PlyScalar type = vertex_->properties[first].type;
+    auto fits = [&](std::string_view name) {
+      size_t i = vertex_->find(name);
+      return i < slots_.size() && !vertex_->properties[i].is_list && vertex_->properties[i].type == type;
+    };
+    if (!fits(names[0]) || !fits(names[1]) || !fits(names[2]) || !white_of(type)) return;
+    color_white_ = *white_of(type);
+    mesh_.srgb_colors = is_integer(type);
+    claim({names[0], names[1], names[2]}, kColor);
+    if (fits(names[3])) claim({names[3]}, kAlpha);
+  }
+
+  static std::optional<float> white_of(PlyScalar type) {
+    if (type == PlyScalar::uint8) return 255.0f;
+    if (type == PlyScalar::uint16) return 65535.0f;
+    if (is_integer(type)) return std::nullopt;
+    return 1.0f;
   }
 
   // Sends scalar properties to consecutive slots, if all of them are there.
@@ -142,7 +170,9 @@ class PlyReader {
     mesh_.positions.reserve(3 * vertex_->count);
     if (has_normals_) mesh_.normals.reserve(3 * vertex_->count);
     if (has_uvs_) mesh_.uvs.reserve(2 * vertex_->count);
+    if (has_colors()) mesh_.colors.reserve(4 * vertex_->count);
     std::array<float, kSlots + 1> row{};
+    row[kAlpha] = color_white_;
     for (uint64_t i = 0; i < vertex_->count; ++i) {
       values_.begin_row();
       for (size_t j = 0; j < slots_.size(); ++j) {
@@ -157,8 +187,12 @@ class PlyReader {
       mesh_.positions.insert(mesh_.positions.end(), &row[0], &row[3]);
       if (has_normals_) mesh_.normals.insert(mesh_.normals.end(), &row[3], &row[6]);
       if (has_uvs_) mesh_.uvs.insert(mesh_.uvs.end(), &row[6], &row[8]);
+      if (!has_colors()) continue;
+      for (size_t j = kColor; j <= kAlpha; ++j) mesh_.colors.push_back(row[j] / color_white_);
     }
   }
+
+  bool has_colors() const { return color_white_ > 0.0f; }
 
   void read_faces() {
     mesh_.indices.reserve(3 * face_->count);
@@ -237,7 +271,8 @@ class PlyReader {
   std::vector<size_t> slots_;  // per property of a vertex
   bool has_normals_ = false;
   bool has_uvs_ = false;
-  size_t corners_ = 0;  // position of the list of corners in the properties of a face
+  float color_white_ = 0.0f;  // what white is stored as; 0: no colours
+  size_t corners_ = 0;        // position of the list of corners in the properties of a face
   MeshData mesh_;
 };
 

@@ -12,6 +12,7 @@ namespace accuray::mesh {
 // byte (binary), the offending value and what was allowed.
 //
 // vertex  x y z; nx ny nz; and one pair of u v, s t, texture_u texture_v, texture_s texture_t; of any scalar type.
+//         red green blue, and alpha: uchar and ushort are stored with the sRGB curve, float and double are linear.
 // face    a list vertex_indices or vertex_index of 3 or more integers below the number of vertices. A polygon is cut
 //         into a fan around its first corner, so it should be convex.
 //

@@ -109,6 +109,33 @@ TEST(Ply, AsciiWithAllNames) {
   }
 }
 
+TEST(Ply, ColorsOfVerticesAreKept) {
+  auto colored = [](const std::string& type, const std::string& names, const std::string& values) {
+    std::string header = kAscii;
+    header.append("element vertex 3\n").append(kXyz);
+    for (std::string_view rest = names; !rest.empty(); rest.remove_prefix(1)) {
+      const char* name = rest[0] == 'r' ? "red" : rest[0] == 'g' ? "green" : rest[0] == 'b' ? "blue" : "alpha";
+      header.append("property ").append(type).append(" ").append(name).append("\n");
+    }
+    header.append("element face 1\n").append(kFace);
+    for (const char* position : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) header.append(position).append(values).append("\n");
+    return read_ply_bytes(header + "3 0 1 2\n");
+  };
+  auto thrice = [](const Floats& one) {
+    Floats all;
+    for (int i = 0; i < 3; ++i) all.insert(all.end(), one.begin(), one.end());
+    return all;
+  };
+  EXPECT_EQ(colored("uchar", "rgb", "255 51 0").colors, thrice({1, .2f, 0, 1}));
+  EXPECT_TRUE(colored("uchar", "rgb", "255 51 0").srgb_colors);
+  EXPECT_EQ(colored("ushort", "abgr", "0 65535 13107 0").colors, thrice({0, .2f, 1, 0}));
+  EXPECT_EQ(colored("float", "rgba", "3 .5 -1 .25").colors, thrice({3, .5f, -1, .25f}));
+  EXPECT_FALSE(colored("float", "rgba", "3 .5 -1 .25").srgb_colors);
+  EXPECT_TRUE(colored("uchar", "rb", "3 4").colors.empty());
+  EXPECT_TRUE(colored("int", "rgb", "3 4 5").colors.empty());
+  EXPECT_EQ(colored("int", "rgb", "3 4 5").report.unknown, 3u);
+}
+
 TEST(Ply, FacesBeforeVerticesAndElementsWithoutProperties) {
   std::string header = kAscii +
                        "element nothing 4294967296000\nelement face 1\nproperty list uchar int vertex_indices\n" +

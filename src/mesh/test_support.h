@@ -24,6 +24,8 @@ inline void expect_valid(const MeshData& mesh) {
   for (uint32_t index : mesh.indices) ASSERT_LT(index, vertices);
   for (float x : mesh.positions) ASSERT_LE(std::fabs(x), kMaxCoordinate);
   for (float x : mesh.uvs) ASSERT_TRUE(std::isfinite(x));
+  ASSERT_TRUE(mesh.colors.empty() || mesh.colors.size() == 4 * vertices);
+  for (float x : mesh.colors) ASSERT_TRUE(std::isfinite(x));
   for (size_t i = 0; i < mesh.normals.size(); i += 3) {
     ASSERT_NEAR(std::hypot(mesh.normals[i], mesh.normals[i + 1], mesh.normals[i + 2]), 1.0, 1e-6);
   }

@@ -57,6 +57,13 @@ def glowing(scene: accuray.Scene, material: str, radiance: float) -> accuray.Sce
     return replace(scene, materials=scene.materials | {material: table})
 
 
+def brightened(scene: accuray.Scene, light: str, factor: float) -> accuray.Scene:
+    """A constant environment with `factor` times its radiance."""
+    table = scene.lights[light]
+    radiance = replace(table["radiance"], scale=table["radiance"].scale * factor)
+    return replace(scene, lights=scene.lights | {light: table | {"radiance": radiance}})
+
+
 def dimmed(scene: accuray.Scene, names: tuple[str, ...], factor: float) -> accuray.Scene:
     """The materials called so emit `factor` of their light."""
     changed = {name: dict(scene.materials[name]) for name in names}
@@ -111,6 +118,7 @@ FAIR = {
     "textured": Fair(
         "the lamp 2.5 times as wide and long, 1/6.25 as bright", partial(enlarged, lamp="lamp", factor=2.5)
     ),
+    "textured-light": Fair("the sky 20 times as bright", partial(brightened, light="night", factor=20)),
     "zoo": Fair("as it is: its lamps are large"),
 }
 

@@ -68,11 +68,15 @@ def test_a_texture_of_one_colour_is_that_colour(texture: Table) -> None:
         {"type": "conductor", "metal": "Cu", "roughness": 0.5},
         {"type": "conductor", "metal": "Cu", "roughness": 0.75, "anisotropy": 0.5},
         {"type": "dielectric", "roughness": 0.5},
+        {"type": "dielectric", "ior": 1.7, "roughness": 0.5},
+        {"type": "thin_dielectric", "ior": 1.4},
+        {"type": "conductor", "eta": 0.25, "k": 3.5, "roughness": 0.5},
+        {"type": "conductor", "eta": 0.25, "k": 3.5},
     ],
     ids=lambda m: "-".join(m),
 )
 def test_a_texture_of_one_number_is_that_number(material: Table) -> None:
-    """Roughness and anisotropy from a map, to the bit."""
+    """Roughness, anisotropy and indices from a map, to the bit."""
     small = {"film": {"width": 8, "height": 8}, "camera": {"type": "perspective", "position": [0, 2, 3]}}
     maps = {key: value for key, value in material.items() if isinstance(value, float)}
     textures = {key: {"type": "image", "pixels": np.full((2, 2), value, np.float32)} for key, value in maps.items()}
@@ -80,6 +84,32 @@ def test_a_texture_of_one_number_is_that_number(material: Table) -> None:
     sums = [accuray.render(one, spp=8).film.sums for one in (scene(material, **small), textured)]
     assert sums[0].any()
     assert np.array_equal(*sums)
+
+
+def test_an_index_from_a_texture_stays_within_what_the_parameter_allows() -> None:
+    """A texture of 100, once halved and once taken from green, is the largest index, 20; one of 0 is the smallest."""
+    texture = {"t": {"type": "checker", "first": [0, 100, 0], "second": [0, 100, 0]}}
+    for use, ior in (
+        ({"channel": "green"}, 20),
+        ({"channel": "green", "scale": 0.5}, 20),
+        ({"channel": "green", "scale": 0.02}, 2),
+        ({}, 0.05),
+    ):
+        plain = scene({"type": "thin_dielectric", "ior": ior})
+        textured = scene({"type": "thin_dielectric", "ior": {"texture": "t", **use}}, texture)
+        assert radiance(textured, [[0.3, 0.1, -1.0]], 64) == radiance(plain, [[0.3, 0.1, -1.0]], 64), use
+
+
+def test_a_textured_index_changes_the_mirror_image_from_point_to_point() -> None:
+    """A pane of index 1 on the left and 2 on the right before black: 2R/(1+R) of the sky, R = 1/9, along the normal."""
+    texture = {"t": {"type": "image", "pixels": [[1.0, 2.0]], "filter": "nearest"}}
+    black = {"type": "diffuse", "reflectance": 0}
+    pane = {**PLANE, "material": "pane", "corner": [-20, -20, 1]}
+    materials = {"m": black, "pane": {"type": "thin_dielectric", "ior": {"texture": "t"}}}
+    of = scene({}, texture, materials=materials, shapes={"plane": PLANE, "pane": pane})
+    found = accuray.radiance(of, [[-5, 0, 2], [5, 0, 2]], DOWN * 2, 4096, wavelengths=[550.0])
+    assert found.mean[0, 0] == 0.0
+    assert abs(found.mean[1, 0] - 0.2) < 5.0 * found.error[1, 0] + 1e-3
 
 
 def test_the_scale_multiplies_and_reflectances_stay_below_one() -> None:

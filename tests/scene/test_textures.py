@@ -55,7 +55,13 @@ def test_a_parameter_holds_what_it_takes_from_the_texture() -> None:
 @pytest.mark.parametrize(
     ("material", "key", "complaint"),
     [
-        ({"emission": {"texture": "t"}}, "materials.m.emission", "takes no texture"),
+        ({"emission_sides": {"texture": "t"}}, "materials.m.emission_sides", "takes no texture"),
+        (
+            {"type": "dielectric", "transmission_color": {"texture": "t"}},
+            "materials.m.transmission_color",
+            "colour of the body's inside",
+        ),
+        ({"type": "dielectric", "ior": {"texture": "t", "channel": "x"}}, "materials.m.ior.channel", "red"),
         ({"reflectance": {"texture": "T"}}, "materials.m.reflectance.texture", 'did you mean "t"'),
         ({"reflectance": {"texture": 3}}, "materials.m.reflectance.texture", "is not a known texture"),
         ({"reflectance": {"texture": "t", "scale": -1}}, "materials.m.reflectance.scale", "out of range"),
@@ -75,6 +81,14 @@ def test_a_wrong_use_is_named(material: Table, key: str, complaint: str) -> None
     with pytest.raises(SceneError, match=complaint) as caught:
         Scene.from_dict(described(material))
     assert caught.value.key == key
+
+
+def test_a_body_that_others_meet_needs_an_index_inside() -> None:
+    glass = {"type": "dielectric", "ior": {"texture": "t"}, "priority": 1}
+    with pytest.raises(SceneError, match="none inside: allowed is a texture only with priority = 0") as caught:
+        lower(Scene.from_dict(described(glass)))
+    assert caught.value.key == "materials.m.ior"
+    lower(Scene.from_dict(described({**glass, "priority": 0})))
 
 
 @pytest.mark.parametrize(

@@ -32,8 +32,8 @@ struct ShadingPoint {
 
   Spectrum spectrum(SpectrumRef ref) const {
     const SpectrumRecord& s = scene.spectra[ref.index];
-    if (s.form == SpectrumForm::textured) [[unlikely]]
-      return textured_reflectance(scene, s, where, wl);
+    if (is_textured(s.form)) [[unlikely]]
+      return textured_spectrum(scene, s, where, wl);
     return evaluate(s, scene.tables, wl);
   }
   float real(const RealRef& ref) const {

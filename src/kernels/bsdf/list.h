@@ -19,10 +19,12 @@ struct MaterialCommon {
   static constexpr auto params() {
     return param_list(Param{.name = "emission",
                             .kind = Kind::spectrum,
-                            .doc = "Spectral radiance that the surface emits.",
+                            .doc = "Spectral radiance that the surface emits; of a texture its colour under D65, times "
+                                   "its scale.",
                             .low = 0,
                             .unit = "W/(m^2 sr nm)",
                             .role = "emission",
+                            .texturable = true,
                             .animatable = true},
                       Param{.name = "emission_sides",
                             .kind = Kind::choice,

@@ -112,7 +112,8 @@ struct OpenPbr {
                             .preset = "[1, 1, 1]",
                             .low = 0,
                             .unit = "1",
-                            .role = "emission"},
+                            .role = "emission",
+                            .texturable = true},
                       Param{.name = "geometry_thin_walled",
                             .kind = Kind::boolean,
                             .doc = "The surface is a thin wall, not the bound of a body: what is clear refracts "

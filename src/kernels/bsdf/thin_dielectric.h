@@ -70,6 +70,7 @@ struct ThinDielectric {
                             .high = 20,
                             .unit = "1",
                             .role = "index",
+                            .texturable = true,
                             .animatable = true,
                             .member = ACCURAY_OFFSET_OF(ThinDielectric, ior)});
   }

@@ -179,6 +179,7 @@ constexpr ParamList<2> film_params(uint32_t thickness, uint32_t ior) {
             .high = 20,
             .unit = "1",
             .role = "index",
+            .texturable = true,
             .animatable = true,
             .member = ior});
 }

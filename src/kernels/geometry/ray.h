@@ -16,6 +16,16 @@ struct Ray {
   float time = 0.0f;
 };
 
+// How wide the part of the scene is that a ray stands for: its diameter at the ray's origin, and what it grows by per
+// unit of way (Amanatides 1984, "Ray Tracing with Cones"). Zero where nothing asks for it.
+struct Cone {
+  float width = 0.0f;
+  float spread = 0.0f;
+
+  bool is_ray() const { return width == 0.0f && spread == 0.0f; }
+  float width_after(float way) const { return fma(spread, way, width); }
+};
+
 // The closest intersection: which primitive of which geometry, and where on it.
 struct Hit {
   float t = infinity;

@@ -14,6 +14,7 @@ struct Mesh {
   Slice<uint32_t> indices;  // 3 per triangle
   Slice<float> normals;     // 3 per vertex, or empty: flat shading
   Slice<float> uvs;         // 2 per vertex, or empty
+  Slice<float> colors;      // 4 per vertex, linear Rec.709 and alpha, or empty
 
   static constexpr const char* name = "mesh";
   static constexpr const char* doc =
@@ -45,6 +46,12 @@ struct Mesh {
               .role = "Nx3",
               .animatable = true},
         Param{.name = "uvs", .kind = Kind::array, .doc = "Texture coordinates; only with positions.", .role = "Nx2"},
+        Param{
+            .name = "colors",
+            .kind = Kind::array,
+            .doc = "Vertex colours, linear Rec.709, and alpha; only with positions. A texture vertex_color reads them.",
+            .low = 0,
+            .role = "Nx3 or Nx4"},
         Param{
             .name = "shading",
             .kind = Kind::choice,

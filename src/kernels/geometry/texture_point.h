@@ -10,11 +10,17 @@ namespace accuray {
 //   - `uv` are a mesh's own texture coordinates where it has some, else the hit's barycentric ones; on a sphere u runs
 //     once around its y axis and v from the south pole to the north; on a disk both run over its bounding square.
 //   - `point` is in the shape's own space: that of the prototype for an instance, else the world.
+//   - `geometry`, `primitive`, `on_triangle` are those of the hit, for what a mesh has at its vertices.
+//   - `footprint` is the diameter in metres of what shall be averaged, along the surface; 0: a point.
 //   - `dpdu` and `dpdv` are derivatives of the point by them, in world space; never zero, and never parallel.
 struct TexturePoint {
   Vec2 uv;
   Vec3 dpdu, dpdv;
   Vec3 point = {0.0f, 0.0f, 0.0f};
+  uint32_t geometry = none;  // none: on no shape
+  uint32_t primitive = 0;
+  Vec2 on_triangle = {0.0f, 0.0f};  // barycentric coordinates of vertices 1 and 2
+  float footprint = 0.0f;
 };
 
 // Two tangents of no particular direction, for where the coordinates give none.
@@ -87,6 +93,9 @@ inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const 
     p = point_on_disk(scene.as<Disk>(shape), point);
   }
   p.point = point;
+  p.geometry = hit.geometry;
+  p.primitive = hit.primitive;
+  p.on_triangle = {hit.u, hit.v};
   if (instanced) {
     const Transform& to_world = scene.instances[hit.instance].to_world;
     p.dpdu = to_world.vector(p.dpdu);

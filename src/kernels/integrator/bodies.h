@@ -50,6 +50,7 @@ inline bool pass_hidden(const SceneView& scene, const MaterialRecord& material, 
   if (material.interior == none || !is_hidden(scene, material.interior, exterior)) return false;
   cross_surface(material, surface, path);
   path.ray.origin = offset_origin(surface.point, surface.error, surface.normal, path.ray.direction);
+  widen_cone(surface.point, 0.0f, path);
   path.origin = surface.point;
   path.bsdf_pdf = 0.0f;
   return true;

@@ -14,13 +14,14 @@ inline float part_number(const Path& path) {
   return uniform(hash(path.sampler.key, path.sampler.index, path.depth, met));
 }
 
-ACCURAY_NOINLINE inline Part chosen_part(const SceneView& scene, Hit hit, Surface surface, bool behind, float u) {
+ACCURAY_NOINLINE inline Part chosen_part(const SceneView& scene, Hit hit, Surface surface, float footprint, bool behind,
+                                         float u) {
   Part part{surface.material, false, u};
   for (uint32_t level = 0; level < most_levels && scene.materials[part.material].composed != 0; ++level) {
     const MaterialRecord& whole = scene.materials[part.material];
-    const PartQuestion question{scene,
-                                whole.reads_texture_point != 0 ? texture_point(scene, hit, surface) : TexturePoint{},
-                                behind != part.turned};
+    PartQuestion question{scene, whole.reads_texture_point != 0 ? texture_point(scene, hit, surface) : TexturePoint{},
+                          behind != part.turned};
+    question.where.footprint = footprint;
     const Part next = dispatch(Compositions{}, whole.bsdf.tag, [&](auto type) {
       return scene.as<typename decltype(type)::type>(whole.bsdf).part(question, part.u);
     });
@@ -32,7 +33,7 @@ ACCURAY_NOINLINE inline Part chosen_part(const SceneView& scene, Hit hit, Surfac
 inline Part part_at(const SceneView& scene, const Surface& surface, const Path& path) {
   if (scene.materials[surface.material].composed == 0) [[likely]]
     return {surface.material, false, 0.0f};
-  return chosen_part(scene, path.hit, surface, leaves(path, surface), part_number(path));
+  return chosen_part(scene, path.hit, surface, footprint_on(surface, path), leaves(path, surface), part_number(path));
 }
 
 // The surface with its back in front.

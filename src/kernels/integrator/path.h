@@ -70,7 +70,7 @@ struct PathTracing {
 
     // Emission met by the path itself.
     if (surface.light != none) {
-      const Spectrum emission = emitted(scene, surface, toward_viewer, path.wl);
+      const Spectrum emission = emitted(scene, path.hit, surface, toward_viewer, path.wl);
       if (!is_black(emission)) {
         const float weight = hit_weight(scene, strategy, path, surface.light, surface);
         path.radiance = fma(path.throughput * weight, emission, path.radiance);

@@ -40,7 +40,8 @@ struct Reference {
       const uint32_t exterior = exterior_at(scene, material, surface, path);
       if (pass_hidden(scene, material, surface, exterior, path)) continue;
       const Vec3 toward_viewer = -path.ray.direction;
-      if (surface.light != none) path.radiance += path.throughput * emitted(scene, surface, toward_viewer, path.wl);
+      if (surface.light != none)
+        path.radiance += path.throughput * emitted(scene, path.hit, surface, toward_viewer, path.wl);
       if (max_depth >= 0 && path.depth >= static_cast<uint32_t>(max_depth)) return;
       if (part.turned) turn(surface);
       const f32x4 u = path.sampler.draw(direction_set(path));

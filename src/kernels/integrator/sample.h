@@ -26,6 +26,27 @@ inline Sampler sampler_for(const Request& request, uint32_t key, uint32_t index)
 }
 inline uint32_t dither_key(uint32_t key, uint32_t index) { return hash(key, index, 0x64697468u); }
 
+// The scene's camera at a point of the film.
+inline CameraRay camera_ray(const SceneView& scene, Vec2 film, const Sampler& sampler, float time) {
+  return dispatch(Cameras{}, scene.root->camera.tag, [&](auto type) {
+    using Camera = typename decltype(type)::type;
+    const f32x4 u_lens = Camera::has_lens ? sampler.draw(lens_set) : lanes(0.5f);
+    return scene.as<Camera>(scene.root->camera).ray(film, {u_lens[0], u_lens[1]}, time);
+  });
+}
+
+// The cone around a camera ray that covers a pixel, from how far the rays through the neighbouring pixels are, by the
+// same point of the lens. The neighbours are those towards the middle of the film, which any camera sees.
+ACCURAY_NOINLINE inline Cone pixel_cone(const SceneView& scene, const Request& request, Vec2 film, Sampler sampler,
+                                        Ray ray) {
+  const float right = (film.x < 0.5f ? 1.0f : -1.0f) / static_cast<float>(request.width);
+  const float down = (film.y < 0.5f ? 1.0f : -1.0f) / static_cast<float>(request.height);
+  const Ray beside = camera_ray(scene, {film.x + right, film.y}, sampler, ray.time).ray;
+  const Ray below = camera_ray(scene, {film.x, film.y + down}, sampler, ray.time).ray;
+  return {0.5f * (length(beside.origin - ray.origin) + length(below.origin - ray.origin)),
+          0.5f * (length(beside.direction - ray.direction) + length(below.direction - ray.direction))};
+}
+
 // Step generate: a camera path through pixel (x, y).
 inline Path generate(const SceneView& scene, const Request& request, uint32_t x, uint32_t y, const Sampler& sampler,
                      const Wavelengths& wl, f32x4 u) {
@@ -36,12 +57,10 @@ inline Path generate(const SceneView& scene, const Request& request, uint32_t x,
   const Vec2 film = {(static_cast<float>(x) + 0.5f + offset.x) / static_cast<float>(request.width),
                      (static_cast<float>(y) + 0.5f + offset.y) / static_cast<float>(request.height)};
   const float time = u[3];
-  const CameraRay seen = dispatch(Cameras{}, scene.root->camera.tag, [&](auto type) {
-    using Camera = typename decltype(type)::type;
-    const f32x4 u_lens = Camera::has_lens ? sampler.draw(lens_set) : lanes(0.5f);
-    return scene.as<Camera>(scene.root->camera).ray(film, {u_lens[0], u_lens[1]}, time);
-  });
+  const CameraRay seen = camera_ray(scene, film, sampler, time);
   Path path = start_path(seen.ray, wl, sampler);
+  if (scene.root->any_mipmap != 0) [[unlikely]]
+    path.cone = pixel_cone(scene, request, film, sampler, seen.ray);
   if (!seen.seen) {
     path.alive = false;
     path.alpha = 0.0f;

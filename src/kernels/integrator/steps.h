@@ -4,6 +4,7 @@
 #include "kernels/accel/accel.h"
 #include "kernels/bsdf/list.h"
 #include "kernels/integrator/shading.h"
+#include "kernels/light/emission.h"
 #include "kernels/light/select.h"
 #include "kernels/texture/opacity.h"
 
@@ -51,10 +52,22 @@ inline Spectrum environment_radiance(const SceneView& scene, const Wavelengths& 
 }
 
 // Radiance that the surface sends back along the ray.
-inline Spectrum emitted(const SceneView& scene, const Surface& surface, Vec3 wo, const Wavelengths& wl) {
+inline Spectrum emitted(const SceneView& scene, const Hit& hit, const Surface& surface, Vec3 wo,
+                        const Wavelengths& wl) {
   const LightRecord& light = scene.lights[surface.light];
   if (light.both_sides == 0 && dot(surface.normal, wo) <= 0.0f) return lanes(0.0f);
-  return scene.spectrum(light.emission, wl);
+  const SpectrumRecord& emission = scene.spectra[light.emission.index];
+  if (is_textured(emission.form)) [[unlikely]]
+    return emission_met(scene, emission, hit, surface, wl);
+  return evaluate(emission, scene.tables, wl);
+}
+
+// What a light emits where a point of it was chosen.
+inline Spectrum sampled_emission(const SceneView& scene, uint32_t light, Vec3 point, const Wavelengths& wl) {
+  const SpectrumRecord& emission = scene.spectra[scene.lights[light].emission.index];
+  if (is_textured(emission.form)) [[unlikely]]
+    return emission_chosen(scene, emission, light, point, wl);
+  return evaluate(emission, scene.tables, wl);
 }
 
 // Weight of light that the path met by itself, given that sample_light might have found it too.
@@ -133,7 +146,8 @@ inline void sample_light(const SceneView& scene, const A& accel, Strategy strate
   const Spectrum weight = alone ? lanes(1.0f) : light_weight(pdf, bsdf, wo, wi);
   const float share = visible_share(scene, accel, path, surface, light);
   if (share == 0.0f) return;
-  Spectrum arriving = scene.spectrum(record.emission, path.wl) * weight * (light.scale * share / pdf);
+  Spectrum arriving =
+      sampled_emission(scene, choice.light, light.point, path.wl) * weight * (light.scale * share / pdf);
   if (path.inside.count != 0) arriving *= share_towards(scene, material, surface, light, path);
   path.radiance = fma(path.throughput * f, arriving, path.radiance);
 }
@@ -159,6 +173,7 @@ inline bool scatter(const MaterialRecord& material, const Surface& surface, cons
   if ((sample.lobe & lobe_transmission) != 0) cross_surface(material, surface, path);
   path.eta_scale *= sample.eta_scale;
   path.bsdf_pdf = sample.pdf;
+  widen_cone(surface.point, sample.pdf, path);
   path.origin = surface.point;
   path.origin_normal = surface.shading;
   path.ray.origin = offset_origin(surface.point, surface.error, surface.normal, wi);

@@ -14,12 +14,14 @@ struct DiskLight {
 
   float area() const { return pi * radius * radius; }
 
-  LightSample sample(Vec3 reference, Vec2 u) const {
+  Vec3 at(Vec2 u) const {
     const Vec2 d = square_to_disk(u);
     const Frame frame = Frame::around(normal);
-    const Vec3 point = fma(d.x * radius, frame.x, fma(d.y * radius, frame.y, center));
+    return fma(d.x * radius, frame.x, fma(d.y * radius, frame.y, center));
+  }
+  LightSample sample(Vec3 reference, Vec2 u) const {
     const float size = gamma(6) * radius;
-    return sample_towards(reference, point, fma(gamma(10), abs(center), Vec3{size, size, size}), normal, area());
+    return sample_towards(reference, at(u), fma(gamma(10), abs(center), Vec3{size, size, size}), normal, area());
   }
   float pdf(Vec3 reference, Vec3 wi, const Surface& at) const {
     return area_to_solid_angle(area(), length_squared(at.point - reference), abs(dot(normal, wi)));

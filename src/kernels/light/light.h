@@ -5,6 +5,7 @@
 //     reference. A failed sample has pdf 0. Lights that no path can hit (`delta`) have pdf 1.
 //   - pdf(reference, wi, surface) is the density with which sample() would have chosen the direction wi, whose ray
 //     met the light at `surface`.
+//   - at(u) of a light that is a surface is a point chosen uniformly by area.
 //   - The radiance arriving along the sample is the light's emission times `scale`: 1 for surfaces and environments,
 //     1/d^2 for a point, 0 on a side that does not emit.
 #pragma once

@@ -20,6 +20,7 @@ struct SphereLight {
     const float size = gamma(8) * radius;
     return fma(gamma(6), abs(center), Vec3{size, size, size});
   }
+  Vec3 at(Vec2 u) const { return fma(radius, square_to_sphere(u), center); }
   float area() const { return 4.0f * pi * radius * radius; }
   // 1 - cos of half the angle, without the cancellation of small angles.
   static float one_minus_cos(float sin2) { return sin2 / (1.0f + sqrt(max(0.0f, 1.0f - sin2))); }

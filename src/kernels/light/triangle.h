@@ -47,6 +47,11 @@ struct TriangleLight {
 
   static constexpr bool delta = false;
 
+  // A point chosen uniformly by area.
+  Vec3 at(Vec2 u) const {
+    const Vec2 b = square_to_triangle(u);
+    return fma(b.x, p1 - p0, fma(b.y, p2 - p0, p0));
+  }
   // The triangle as seen from a reference.
   struct Seen {
     Vec3 a, b, c;
@@ -74,8 +79,7 @@ struct TriangleLight {
       if (!(t > 0.0f && is_finite(t))) return no_light();
       return {wi, fma(t, wi, reference), error, normal, t, 1.0f / seen.solid_angle, 1.0f};
     }
-    const Vec2 b = square_to_triangle(u);
-    return sample_towards(reference, fma(b.x, p1 - p0, fma(b.y, p2 - p0, p0)), error, normal, area);
+    return sample_towards(reference, at(u), error, normal, area);
   }
 
   float pdf(Vec3 reference, Vec3 wi, const Surface& at) const {

@@ -11,8 +11,13 @@ enum class SpectrumForm : uint32_t {
   fine,         // scale * table with a step of its own
   sigmoid,      // scale * S(c0 t^2 + c1 t + c2), t = (lambda - 360) / 470 (Jakob and Hanika 2019)
   lit_sigmoid,  // the same times a table at 1 nm: an RGB light under a white
-  textured      // scale * the texture number `table`: differs from point to point, see texture/list.h
+  // From here on the spectrum differs from point to point: read by textured_spectrum() in texture/list.h.
+  textured,          // scale * the texture number `table`, as a reflectance
+  textured_index,    // scale * channel `count` of the texture number `table`, within c0 and c1, at all wavelengths
+  textured_emission  // scale * the texture number `count` under the table's white; here: of the texture's white
 };
+
+constexpr bool is_textured(SpectrumForm form) { return form >= SpectrumForm::textured; }
 
 struct SpectrumRecord {
   SpectrumForm form;
@@ -56,6 +61,7 @@ inline f32x4 lookup_fine(const SpectrumRecord& s, const float* table, const Wave
 inline Spectrum evaluate(const SpectrumRecord& s, const float* tables, const Wavelengths& wl) {
   switch (s.form) {
     case SpectrumForm::table:
+    case SpectrumForm::textured_emission:
       return lookup(tables + s.table, wl) * s.scale;
     case SpectrumForm::fine:
       return lookup_fine(s, tables + s.table, wl) * s.scale;
@@ -64,6 +70,7 @@ inline Spectrum evaluate(const SpectrumRecord& s, const float* tables, const Wav
     case SpectrumForm::lit_sigmoid:
       return sigmoid_of(s, wl) * lookup(tables + s.table, wl) * s.scale;
     case SpectrumForm::textured:
+    case SpectrumForm::textured_index:
     case SpectrumForm::constant:
       break;
   }

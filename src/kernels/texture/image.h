@@ -1,63 +1,21 @@
-// A picture from a file or an array, read bilinearly.
+// A picture from a file or an array, read bilinearly, or trilinearly from mipmaps.
 //
 // Texels are kept as the file has them, 8 or 16 bit integers, half or single precision floats, in a section of their
 // own, row by row from the top. Integers become numbers through a table (sRGB, IEC 61966-2-1) or by division.
 #pragma once
 
-#include "kernels/texture/texture.h"
+#include "kernels/texture/mipmap.h"
 
 namespace accuray {
-
-enum class TexelFormat : uint32_t { u8, u16, half, single };
-enum class Wrap : uint32_t { repeat, mirror, clamp, black };
-
-// Half precision to single, exact; infinities are not kept apart, the lowering takes finite texels only.
-inline float half_to_float(uint32_t bits) {
-  const float magnitude = float_of((bits & 0x7fffu) << 13) * 0x1p112f;
-  return float_of(bits_of(magnitude) | ((bits & 0x8000u) << 16));
-}
-
-// The two texels on an axis that a coordinate lies between, and how far from the first to the second. -1: outside.
-struct TexelPair {
-  int32_t low, high;
-  float fraction;
-};
-
-// Position of texel i on an axis of n after wrapping; i is at most one beyond the ends, or outside and black.
-inline int32_t wrapped(int32_t i, int32_t n, Wrap wrap) {
-  if (i >= 0 && i < n) return i;
-  if (wrap == Wrap::repeat) return i < 0 ? i + n : i - n;
-  return wrap == Wrap::black ? -1 : clamp(i, 0, n - 1);
-}
-
-// t runs from 0 to 1 over n texels, whose centres are at (i + 1/2) / n.
-inline TexelPair texels_at(float t, uint32_t count, Wrap wrap, bool nearest) {
-  float low = 0.0f;
-  float high = 1.0f;
-  if (wrap == Wrap::repeat) {
-    t = fraction_of(t);
-  } else if (wrap == Wrap::mirror) {
-    const float half = 2.0f * fraction_of(0.5f * t);
-    t = half > 1.0f ? 2.0f - half : half;
-  } else if (wrap == Wrap::black) {
-    low = -1.0f;
-    high = 2.0f;
-  }
-  t = min(max(low, t), high);  // this order makes NaN `low`
-  const auto n = static_cast<int32_t>(count);
-  const float x = nearest ? t * static_cast<float>(count) : fma(t, static_cast<float>(count), -0.5f);
-  const float whole = floor(x);
-  const int32_t first = clamp(static_cast<int32_t>(whole), -n - 1, 2 * n);
-  return {wrapped(first, n, wrap), wrapped(first + 1, n, wrap), nearest ? 0.0f : x - whole};
-}
 
 struct ImageTexture {
   Slice<uint8_t> texels;
   UvMap map;
   Wrap wrap_u, wrap_v;
-  uint32_t nearest;
+  TexelFilter filter;
   uint32_t width, height, channels;
   TexelFormat format;
+  Mipmaps mipmaps;  // smaller and smaller, for that filter
   uint32_t decode;  // of colours: first entry of a table in the scene's tables; none: integers are divided
 
   static constexpr const char* name = "image";
@@ -87,10 +45,12 @@ struct ImageTexture {
                   .choices = "auto|srgb|linear|data"},
             Param{.name = "filter",
                   .kind = Kind::choice,
-                  .doc = "Between texels: bilinear, or the nearest one.",
+                  .doc =
+                      "Between texels: bilinear, or the nearest one; or mipmap, which averages over what a ray stands "
+                      "for: less noise from afar, and more blur.",
                   .preset = "\"bilinear\"",
-                  .choices = "bilinear|nearest",
-                  .member = ACCURAY_OFFSET_OF(ImageTexture, nearest)},
+                  .choices = "bilinear|nearest|mipmap",
+                  .member = ACCURAY_OFFSET_OF(ImageTexture, filter)},
             Param{.name = "wrap_u",
                   .kind = Kind::choice,
                   .doc = "Left and right of the picture: it is repeated, mirrored, its edge goes on, or all is black "
@@ -110,16 +70,33 @@ struct ImageTexture {
   float step() const { return 0.5f / static_cast<float>(max(width, height)); }
   TextureValue value(const SceneView& scene, const TexturePoint& p) const {
     const Vec2 uv = map.at(p.uv);
-    const TexelPair x = texels_at(uv.x, width, wrap_u, nearest != 0);
-    const TexelPair y = texels_at(1.0f - uv.y, height, wrap_v, nearest != 0);
-    const TextureValue upper = between(texel(scene, x.low, y.low), texel(scene, x.high, y.low), x.fraction);
-    const TextureValue lower = between(texel(scene, x.low, y.high), texel(scene, x.high, y.high), x.fraction);
-    return between(upper, lower, y.fraction);
+    if (filter == TexelFilter::mipmap && p.footprint > 0.0f) {
+      const float level = mip_level(p, map, width, height, mipmaps.count);
+      if (level > 0.0f) return filtered(scene, uv, level);
+    }
+    return stored(scene, uv);
   }
 
  private:
-  static TextureValue between(TextureValue a, TextureValue b, float share) { return fma(lanes(share), b - a, a); }
-
+  TextureValue stored(const SceneView& scene, Vec2 uv) const {
+    const TexelPair x = texels_at(uv.x, width, wrap_u, filter == TexelFilter::nearest);
+    const TexelPair y = texels_at(1.0f - uv.y, height, wrap_v, filter == TexelFilter::nearest);
+    return bilinear(x, y, [&](int32_t i, int32_t j) { return texel(scene, i, j); });
+  }
+  // Between the two levels that lie next to this one.
+  TextureValue filtered(const SceneView& scene, Vec2 uv, float level) const {
+    const auto fine = static_cast<uint32_t>(level);
+    const float share = level - static_cast<float>(fine);
+    const TextureValue a = fine == 0 ? stored(scene, uv) : smaller(scene, uv, fine);
+    if (share == 0.0f) return a;
+    return fma(lanes(share), smaller(scene, uv, fine + 1) - a, a);
+  }
+  TextureValue smaller(const SceneView& scene, Vec2 uv, uint32_t level) const {
+    const MipLevel mip = mip_at(scene, mipmaps, width, height, channels, level);
+    const TexelPair x = texels_at(uv.x, mip.width, wrap_u, false);
+    const TexelPair y = texels_at(1.0f - uv.y, mip.height, wrap_v, false);
+    return bilinear(x, y, [&](int32_t i, int32_t j) { return mip.texel(i, j, channels); });
+  }
   TextureValue texel(const SceneView& scene, int32_t x, int32_t y) const {
     if (x < 0 || y < 0) return lanes(0.0f);
     const uint8_t* bytes = scene.at(texels);

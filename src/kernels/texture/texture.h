@@ -6,7 +6,8 @@
 //   - A value has four components: linear Rec.709 red, green and blue, and alpha (1 where there is none). Where a
 //     number is asked for, it is one of these components.
 //   - u runs to the right and v upwards: uv (0, 0) is the lower left corner of a picture, (1, 1) its upper right one.
-//   - X::reads_uv says that shapes need texture coordinates of their own; other textures read the point itself.
+//   - X::reads_uv says that shapes need texture coordinates of their own; other textures read the point itself, or, if
+//     X::reads_colors is there, what is stored at the vertices of meshes.
 //   - step() is a distance over which the value changes little, for slopes: of coordinates, or metres.
 #pragma once
 

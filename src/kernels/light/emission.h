@@ -1,0 +1,61 @@
+// Emission that a texture gives: the same function of the place, whether a path met the light there or chose the point.
+#pragma once
+
+#include "kernels/light/list.h"
+#include "kernels/texture/list.h"
+
+namespace accuray {
+
+// Barycentric coordinates, of vertices 1 and 2, of a point in the plane of a triangle.
+inline Vec2 barycentric(const Triangle& tri, Vec3 point) {
+  const Vec3 e1 = tri.p1 - tri.p0;
+  const Vec3 e2 = tri.p2 - tri.p0;
+  const Vec3 d = point - tri.p0;
+  const Vec3 n = cross(e1, e2);
+  const float scale = 1.0f / length_squared(n);
+  return {dot(cross(d, e2), n) * scale, dot(cross(e1, d), n) * scale};
+}
+
+// The hit of a ray that meets a light at a point of it.
+inline Hit hit_on_light(const SceneView& scene, uint32_t light, Vec3 point) {
+  const LightPlace place = scene.light_places[light];
+  Hit hit;
+  hit.geometry = place.geometry;
+  hit.instance = place.instance;
+  hit.primitive = place.primitive;
+  const Tagged shape = scene.geometries[place.geometry].shape;
+  if (shape.tag != tag_of<Mesh>(Shapes{})) return hit;
+  const Mesh& mesh = scene.as<Mesh>(shape);
+  if (place.instance != none) point = scene.instances[place.instance].to_object.point(point);
+  Vec2 b = barycentric(triangle_of(scene, mesh, hit.primitive), point);
+  const bool outside = min(b.x, min(b.y, 1.0f - b.x - b.y)) < 0.0f;
+  if (outside && scene.lights[light].light.tag == tag_of<QuadLight>(Lights{})) {
+    ++hit.primitive;
+    b = barycentric(triangle_of(scene, mesh, hit.primitive), point);
+  }
+  hit.u = b.x;
+  hit.v = b.y;
+  return hit;
+}
+
+// What a textured light emits at a hit.
+ACCURAY_NOINLINE inline Spectrum emission_met(const SceneView& scene, const SpectrumRecord& emission, Hit hit,
+                                              Surface surface, Wavelengths wl) {
+  return textured_spectrum(scene, emission, texture_point(scene, hit, surface), wl);
+}
+
+// The texture point of a place on a light; textures ask for no tangents.
+inline TexturePoint point_on_light(const SceneView& scene, uint32_t light, Vec3 point) {
+  Surface surface{};
+  surface.point = point;
+  surface.normal = {0.0f, 0.0f, 1.0f};
+  return texture_point(scene, hit_on_light(scene, light, point), surface);
+}
+
+// What a textured light emits at a chosen point.
+ACCURAY_NOINLINE inline Spectrum emission_chosen(const SceneView& scene, const SpectrumRecord& emission, uint32_t light,
+                                                 Vec3 point, Wavelengths wl) {
+  return textured_spectrum(scene, emission, point_on_light(scene, light, point), wl);
+}
+
+}  // namespace accuray
