@@ -106,6 +106,7 @@ FAIR = {
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
     "teapot": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),
+    "thin-film": Fair("the ground glows", partial(glowing, material="ground", radiance=0.2)),
     "torus-knot": Fair("the room glows", partial(glowing, material="plaster", radiance=1.0)),
     "textured": Fair(
         "the lamp 2.5 times as wide and long, 1/6.25 as bright", partial(enlarged, lamp="lamp", factor=2.5)

@@ -4,12 +4,13 @@
 #include "kernels/bsdf/conductor.h"
 #include "kernels/bsdf/dielectric.h"
 #include "kernels/bsdf/diffuse.h"
+#include "kernels/bsdf/sheen.h"
 #include "kernels/bsdf/thin_dielectric.h"
 #include "kernels/dispatch.h"
 
 namespace accuray {
 
-using Bsdfs = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric>;
+using Bsdfs = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric, Sheen>;
 
 // The header that every material has besides its BSDF.
 struct MaterialCommon {
