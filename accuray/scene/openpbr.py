@@ -121,8 +121,7 @@ def _fuzzy(m: Table, below: Table) -> Table:
     if m["fuzz_weight"] == 0.0:
         return below
     fibres = {"type": "sheen", "color": m["fuzz_color"], "roughness": m["fuzz_roughness"]}
-    layer = {"type": "fibres", "below": below, "above": fibres}
-    return {**layer, "weight": m["fuzz_weight"], "roughness": m["fuzz_roughness"]}
+    return {"type": "fuzz", "base": below, "fibres": fibres, "weight": m["fuzz_weight"]}
 
 
 def _film(m: Table) -> Table:

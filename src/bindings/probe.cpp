@@ -319,6 +319,7 @@ void bind_probe(nb::module_& module) {
   nb::module_ probe = module.def_submodule("probe", "Parts of the kernels over arrays, for tests and study.");
   probe.def("bsdf_sample", &bsdf_sample, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "u"_a, "seed"_a = 0);
   probe.def("bsdf_eval", &bsdf_eval, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "wi"_a, "seed"_a = 0);
+  probe.def("sheen_albedo", &sheen_albedo, "cosine"_a, "roughness"_a);
   probe.def("texture_values", &texture_values, "scene"_a, "texture"_a, "uv"_a, "points"_a, "footprint"_a = 0.0f);
   probe.def("footprints", &footprints, "scene"_a, "width"_a, "height"_a, "pixels"_a);
   probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);

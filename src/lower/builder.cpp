@@ -102,8 +102,15 @@ uint32_t SceneBuilder::add_composition(std::string_view type, Values values, con
   if (type == TwoSided::name && !values.contains("back")) values.emplace("back", value_of(values, "front"));
   MaterialRecord material = material_with(header, emission);
   material.composed = 1;
+  if (type == Fuzz::name) {
+    const MaterialRecord& fibres = materials_.at(static_cast<uint32_t>(number_of(values, "fibres")));
+    if (fibres.composed != 0 || fibres.bsdf.tag != tag_of<Sheen>(Bsdfs{})) {
+      throw BadParameter("fibres", "are no fibres: allowed is a material of the type sheen");
+    }
+    material.reads_texture_point = fibres.reads_texture_point;
+  }
   material.bsdf = lower_type(Compositions{}, type, values, pool_);
-  material.reads_texture_point = any_textured(values) || any_textured(header) ? 1u : 0u;
+  if (any_textured(values) || any_textured(header)) material.reads_texture_point = 1;
   for (const char* side : {"front", "back"}) {
     if (values.contains(side) && bounds_body(static_cast<uint32_t>(number_of(values, side)))) {
       throw BadParameter(side, "is the surface of a body: allowed are materials that let nothing in");

@@ -107,6 +107,7 @@ FAIR = {
     ),
     "furnace": Fair("as it is: its light comes from everywhere"),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
+    "openpbr": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "rough-metals": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "specularity": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "sphere-cavity": Fair("as it is: `reference` sums its point light plainly"),
@@ -114,6 +115,7 @@ FAIR = {
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
     "teapot": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),
+    "thin-film": Fair("the ground glows", partial(glowing, material="ground", radiance=0.2)),
     "torus-knot": Fair("the room glows", partial(glowing, material="plaster", radiance=1.0)),
     "textured": Fair(
         "the lamp 2.5 times as wide and long, 1/6.25 as bright", partial(enlarged, lamp="lamp", factor=2.5)

@@ -9,6 +9,7 @@ import pytest
 
 pytest.importorskip("accuray._core", reason="the compiled module is not built")
 import accuray
+from accuray._core import probe
 
 Table = dict[str, Any]
 SKY = {"sky": {"type": "constant", "radiance": 1}}
@@ -130,6 +131,21 @@ def test_parts_without_maps_take_those_of_the_whole() -> None:
     assert radiance(flat) != radiance(through)
 
 
+@pytest.mark.parametrize("angle", [0.0, 60.0, 80.0])
+def test_fibres_take_their_albedo_from_the_base(angle: float) -> None:
+    """White ones give it back, black ones do not; half a weight is half of each."""
+    cosine = float(np.cos(np.radians(angle)))
+    share = 0.5 * probe.sheen_albedo(cosine, 0.6)
+    away = np.array([np.sin(np.radians(angle)), 0.0, -cosine])
+    origin = np.array([0.1, 0.2, 0.0]) - away
+    for colour in (0.0, 1.0):
+        fibres = {"type": "sheen", "color": colour, "roughness": 0.6}
+        fuzzy = scene({"fibres": fibres, "m": {"type": "fuzz", "base": "b", "fibres": "fibres", "weight": 0.5}})
+        found = radiance(fuzzy, origin, away)
+        expected = (1 - share) * 0.3 + share * colour
+        assert abs(found[0] - expected) <= 5.0 * found[1] + 2e-3, (found, expected)
+
+
 def bad(materials: Table, *texts: str) -> None:
     with pytest.raises(accuray.SceneError) as caught:
         accuray.render(scene(materials, film={"width": 2, "height": 2}), spp=1)
@@ -149,6 +165,7 @@ def test_what_cannot_be_a_part() -> None:
     bad({"veil": veil, "m": {**mix, "second": "veil"}}, "materials.veil.opacity", '"m"')
     glass = {"glass": {"type": "dielectric"}, "some": {**mix, "second": "glass"}}
     bad({**glass, "m": {"type": "two_sided", "front": "some"}}, "materials.m.front", "body")
+    bad({"m": {"type": "fuzz", "base": "a", "fibres": "b"}}, "materials.m.fibres", "type sheen")
     chain = {f"m{i}": {"type": "two_sided", "front": f"m{i + 1}" if i < 9 else "a"} for i in range(10)}
     bad({**chain, "m": mix}, "too deeply", "at most 8")
     tree = {f"t{i}": {**mix, "first": f"t{i + 1}", "second": f"t{i + 1}"} for i in range(4)}

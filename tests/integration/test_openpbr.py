@@ -70,6 +70,7 @@ WHITE = {"base_color": 1.0, "specular_color": 1.0}
         {},
         {"coat_weight": 0.5, "base_metalness": 0.5, "transmission_weight": 0.5},
         {"coat_weight": 1.0, "coat_roughness": 0.6, "specular_roughness": 0.7, "specular_roughness_anisotropy": 0.6},
+        {"fuzz_weight": 0.7, "fuzz_roughness": 0.8, "base_metalness": 0.5},
         {"specular_weight": 0.3, "base_diffuse_roughness": 1.0, "transmission_weight": 0.3, "thin_film_weight": 0.5},
     ],
 )

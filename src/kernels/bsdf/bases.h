@@ -6,12 +6,13 @@
 #include "kernels/bsdf/conductor.h"
 #include "kernels/bsdf/dielectric.h"
 #include "kernels/bsdf/diffuse.h"
+#include "kernels/bsdf/sheen.h"
 #include "kernels/bsdf/thin_dielectric.h"
 #include "kernels/dispatch.h"
 
 namespace accuray {
 
-using Bases = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric>;
+using Bases = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric, Sheen>;
 
 template <class T>
 T declared();  // for unevaluated use

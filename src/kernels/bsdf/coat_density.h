@@ -24,6 +24,7 @@ constexpr float coat_glossy_spread = 0.2f;
 constexpr float coat_least_share = 0.02f;
 
 inline CoatBaseSketch sketch_of(const DiffuseAt&) { return {1.0f, 0.0f, 0.0f, 1.0f}; }
+inline CoatBaseSketch sketch_of(const SheenAt&) { return {1.0f, 0.0f, 0.0f, 1.0f}; }
 inline CoatBaseSketch sketch_of(const ConductorAt& base) {
   return {coat_glossy_spread, base.facets.alpha_x, base.facets.alpha_y, 1.0f};
 }

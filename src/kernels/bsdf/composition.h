@@ -7,6 +7,7 @@
 // A composition is a struct of parameters with parts() and part(question, u), listed in Compositions.
 #pragma once
 
+#include "kernels/bsdf/sheen.h"
 #include "kernels/dispatch.h"
 #include "kernels/schema.h"
 #include "kernels/texture/list.h"
@@ -19,12 +20,18 @@ struct PartQuestion {
   const SceneView& scene;
   TexturePoint where;  // set for materials whose record says that they read it
   bool behind;         // the path meets the back of the surface
+  float cosine;        // between the path and the shading normal, without sign
 };
+
+inline float real_at(const PartQuestion& q, const RealRef& ref) {
+  return ref.texture == none ? ref.value : textured_real(q.scene, ref, q.where);
+}
 
 struct Part {
   uint32_t material;
   bool turned;  // the surface counts as turned around
   float u;      // what is left of the number that decides
+  float scale;  // of what the part shows
 };
 
 struct Parts {
@@ -63,9 +70,9 @@ struct Mix {
   }
   Parts parts() const { return {first, second}; }
   Part part(const PartQuestion& q, float u) const {
-    const float w = weight.texture == none ? weight.value : textured_real(q.scene, weight, q.where);
-    if (u < w) return {second, false, u / w};
-    return {first, false, (u - w) / (1.0f - w)};
+    const float w = real_at(q, weight);
+    if (u < w) return {second, false, u / w, 1.0f};
+    return {first, false, (u - w) / (1.0f - w), 1.0f};
   }
 };
 
@@ -89,9 +96,52 @@ struct TwoSided {
                             .member = ACCURAY_OFFSET_OF(TwoSided, back)});
   }
   Parts parts() const { return {front, back}; }
-  Part part(const PartQuestion& q, float u) const { return {q.behind ? back : front, q.behind, u}; }
+  Part part(const PartQuestion& q, float u) const { return {q.behind ? back : front, q.behind, u, 1.0f}; }
 };
 
-using Compositions = TypeList<Mix, TwoSided>;
+// Fibres of directional albedo E scatter the share E of the light and let the rest through to the base. The share is
+// that of the path's direction (albedo scaling, as in OpenPBR 1.1), so the whole is reciprocal only as far as E is
+// constant.
+struct Fuzz {
+  uint32_t base, fibres;
+  RealRef weight;
+
+  static constexpr const char* name = "fuzz";
+  static constexpr const char* doc = "Fibres upon another material: dust, peach skin, velvet on its ground.";
+  static constexpr auto params() {
+    return param_list(Param{.name = "base",
+                            .kind = Kind::reference,
+                            .doc = "Material under the fibres.",
+                            .role = "material",
+                            .required = true,
+                            .member = ACCURAY_OFFSET_OF(Fuzz, base)},
+                      Param{.name = "fibres",
+                            .kind = Kind::reference,
+                            .doc = "The fibres: a material of the type sheen.",
+                            .role = "material",
+                            .required = true,
+                            .member = ACCURAY_OFFSET_OF(Fuzz, fibres)},
+                      Param{.name = "weight",
+                            .kind = Kind::real,
+                            .doc = "Share of the surface that has fibres.",
+                            .preset = "1",
+                            .low = 0,
+                            .high = 1,
+                            .unit = "1",
+                            .texturable = true,
+                            .animatable = true,
+                            .member = ACCURAY_OFFSET_OF(Fuzz, weight)});
+  }
+  Parts parts() const { return {base, fibres}; }
+  Part part(const PartQuestion& q, float u) const {
+    const RealRef& roughness = q.scene.as<Sheen>(q.scene.materials[fibres].bsdf).roughness;
+    const float albedo = sheen_albedo(q.cosine, real_at(q, roughness));
+    const float share = real_at(q, weight) * albedo;
+    if (u < share) return {fibres, false, u / share, 1.0f / albedo};
+    return {base, false, (u - share) / (1.0f - share), 1.0f};
+  }
+};
+
+using Compositions = TypeList<Mix, TwoSided, Fuzz>;
 
 }  // namespace accuray

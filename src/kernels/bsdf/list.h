@@ -6,12 +6,13 @@
 #include "kernels/bsdf/conductor.h"
 #include "kernels/bsdf/dielectric.h"
 #include "kernels/bsdf/diffuse.h"
+#include "kernels/bsdf/sheen.h"
 #include "kernels/bsdf/thin_dielectric.h"
 #include "kernels/dispatch.h"
 
 namespace accuray {
 
-using Bsdfs = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric, Coated>;
+using Bsdfs = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric, Sheen, Coated>;
 static_assert(starts_with(Bsdfs{}, Bases{}), "a base has the same tag in both lists");
 
 // The header that every material has besides its BSDF.

@@ -78,8 +78,7 @@ struct PathTracing {
     }
     path.alive = may_scatter(path);
     if (!path.alive) return;
-    if (part.turned) [[unlikely]]
-      turn(surface);
+    show(part, surface, path);
 
     // The sample's numbers for this vertex; the second set is drawn where something needs it.
     const f32x4 u_direction = path.sampler.draw(direction_set(path));

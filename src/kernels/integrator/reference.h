@@ -43,7 +43,7 @@ struct Reference {
       if (surface.light != none)
         path.radiance += path.throughput * emitted(scene, path.hit, surface, toward_viewer, path.wl);
       if (max_depth >= 0 && path.depth >= static_cast<uint32_t>(max_depth)) return;
-      if (part.turned) turn(surface);
+      show(part, surface, path);
       const f32x4 u = path.sampler.draw(direction_set(path));
       const f32x4 u_decision = path.sampler.draw(decision_set(path));
       const ShadingPoint point = shading_point(scene, material, path, surface, exterior);
