@@ -15,8 +15,8 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
   const Spectrum before =
       material.interior == none ? lanes(1.0f) : exterior_ior(scene, material.interior, exterior, path.wl);
   const uint32_t seed = hash(path.sampler.key, path.sampler.index, path.depth, bsdf_stream);
-  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before, seed};
-  return {scene, path.wl, texture_point(scene, path.hit, surface), before, seed};
+  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before, seed, leaves(path, surface)};
+  return {scene, path.wl, texture_point(scene, path.hit, surface), before, seed, leaves(path, surface)};
 }
 inline Frame shading_frame(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
                            const ShadingPoint& p, const Path& path) {
