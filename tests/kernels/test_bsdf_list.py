@@ -185,7 +185,7 @@ def test_the_mean_weight_is_the_integral_of_eval(name: str) -> None:
 
 STOCHASTIC = [(name, i) for name in TABLES if claims(name, "stochastic") for i in range(len(MORE[name]))]
 CELLS = (8, 8)
-DRAWS = 40_000
+DRAWS = 20_000
 
 
 def in_cells(values: FloatArray, directions: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -217,7 +217,7 @@ def test_samples_follow_the_values_in_expectation(name: str, number: int, direct
     (a, va, na), (b, vb, nb) = (
         in_cells(*(np.concatenate(x) for x in zip(*e, strict=True))) for e in (sampled, evaluated)
     )
-    told = np.minimum(na, nb) >= 100
+    told = np.minimum(na, nb) >= 50
     assert a[told].sum() > 0.5 * a.sum(), "no power"
     z = np.abs(a - b)[told] / np.sqrt(va + vb)[told]
     threshold = two_sided_threshold(sidak(0.01, 3 * len(STOCHASTIC) * a.size))
@@ -256,16 +256,12 @@ LOSSLESS: dict[str, list[dict[str, Any]]] = {
     + [{"ior": n, "roughness": r} for n in (0.05, 0.7, 1.01, 1.5, 4.0, "SF11") for r in ROUGH],
     "thin_dielectric": [{"ior": n} for n in (0.5, 1.0, 1.5, "SF11")],
     "coated": [
-        {"base": base, "roughness": r}
-        for base in (
-            {"type": "diffuse", "reflectance": 1.0},
-            {"type": "conductor", "metal": "perfect"},
-            {"type": "conductor", "metal": "perfect", "roughness": 0.5},
-            {"type": "dielectric", "ior": 1.2},
-            {"type": "dielectric", "ior": "SF11", "roughness": 0.5},
-            {"type": "thin_dielectric", "ior": 1.7},
-        )
-        for r in (0.0, 0.5)
+        {"base": {"type": "diffuse", "reflectance": 1.0}},
+        {"base": {"type": "diffuse", "reflectance": 1.0}, "roughness": 0.5},
+        {"base": {"type": "conductor", "metal": "perfect", "roughness": 0.5}, "roughness": 0.5},
+        {"base": {"type": "dielectric", "ior": 1.2}},
+        {"base": {"type": "dielectric", "ior": "SF11", "roughness": 0.5}, "ior": 1.3},
+        {"base": {"type": "thin_dielectric", "ior": 1.7}, "roughness": 0.5},
     ],
 }
 

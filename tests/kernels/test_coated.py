@@ -15,8 +15,8 @@ import accuray
 from accuray.verify import optics
 from tests.kernels.support import SEED, Bsdf, FloatArray, bsdfs, rows, uniform, unit
 
-COUNT = 200_000
-VALUES = 50_000
+COUNT = 100_000
+VALUES = 25_000
 SIGMAS = 4.5
 ANGLES = (0.0, 45.0, 80.0)
 
@@ -198,15 +198,15 @@ def lit_plate(integrator: dict[str, Any], base: dict[str, Any], layer: dict[str,
 def test_strategies_agree(base: dict[str, Any], layer: dict[str, Any]) -> None:
     kinds: list[dict[str, Any]] = [{"type": "path", "strategy": s} for s in ("mis", "light", "bsdf")]
     measured = []
-    for kind in [*kinds, {"type": "direct"}, {"type": "reference"}]:
+    for kind in [*kinds, {"type": "reference"}]:
         found = accuray.radiance(
-            lit_plate(kind, base, layer), [[1.0, 0.5, 0.2]] * 64, [[-1, -0.5, -0.1]] * 64, 1024, space="xyz"
+            lit_plate(kind, base, layer), [[1.0, 0.5, 0.2]] * 32, [[-1, -0.5, -0.1]] * 32, 512, space="xyz"
         )
         values = found.mean[:, 1]
-        measured.append((values.mean(), values.std(ddof=1) / 8.0))
+        measured.append((values.mean(), values.std(ddof=1) / math.sqrt(32)))
     truth, its_error = measured[0]
     for mean, error in measured[1:]:
-        assert error < 0.02 * truth, "no power"
+        assert error < 0.04 * truth, "no power"
         assert abs(mean - truth) < 5.0 * math.hypot(error, its_error), (mean, truth, error)
 
 
@@ -220,7 +220,7 @@ def test_coated_bodies_absorb_inside() -> None:
             "lights": {"sky": {"type": "constant"}},
         }
     )
-    found = accuray.radiance(scene, [[0, 0, 5]] * 32, [[0, 0, -1]] * 32, 4096, wavelengths=[550.0])
+    found = accuray.radiance(scene, [[0, 0, 5]] * 32, [[0, 0, -1]] * 32, 2048, wavelengths=[550.0])
     r, t = stack(optics.fresnel(0.0, 1.4), optics.fresnel(0.0, 1.2 / 1.4))
     expected = r + t**2 * 0.5 / (1.0 - r * 0.5)
     check(found.mean[:, 0], expected, "straight through")
