@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from accuray import data
-from accuray.verify import films, optics
+from accuray.verify import coats, films, optics
 from accuray.verify.case import Case
 from accuray.verify.probes import GREEN, RayProbe, Rays, across_parallelogram, cosine_about, meeting_origin
 from accuray.verify.scenes import (
@@ -209,4 +209,4 @@ def _metals() -> list[Case]:
 def cases() -> list[Case]:
     """All cases of this chapter."""
     groups = (_reflectances, _radiance_scaling, _slabs, _absorbing_slabs, _shift, _glasses, _metals)
-    return [*(case for group in groups for case in group()), *films.cases()]
+    return [*(case for group in groups for case in group()), *films.cases(), *coats.cases()]

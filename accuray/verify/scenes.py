@@ -69,6 +69,11 @@ def glass(ior: Any, **more: Any) -> Table:
     return {"type": "dielectric", "ior": ior, **more}
 
 
+def coat(base: Table, **layer: Any) -> Table:
+    """A layer over a material, which `assemble` gives a name of its own."""
+    return {"type": "coated", "base": base, **layer}
+
+
 def sphere(center: Sequence[float], radius: float, material: Table) -> Solid:
     """A sphere; its front is outside."""
     return {"type": "sphere", "center": list(map(float, center)), "radius": float(radius)}, material
@@ -146,8 +151,15 @@ def assemble(
         "film": {"width": 8, "height": 8, "filter": {"type": "box"}},
         "camera": {"type": "perspective"},
         "integrator": dict(integrator),
-        "materials": {f"m{i}": dict(material) for i, (_, material) in enumerate(solids)},
+        "materials": {k: v for i, (_, material) in enumerate(solids) for k, v in _named(f"m{i}", material).items()},
         "shapes": {f"s{i}": {**shape, "material": f"m{i}"} for i, (shape, _) in enumerate(solids)},
         "lights": {f"l{i}": dict(light) for i, light in enumerate(lights)},
     }
     return scene | more
+
+
+def _named(name: str, material: Table) -> dict[str, Table]:
+    """The tables that a material is made of: itself, and what it lies upon."""
+    if not isinstance(material.get("base"), dict):
+        return {name: dict(material)}
+    return {name: material | {"base": f"{name}-base"}, f"{name}-base": dict(material["base"])}

@@ -30,7 +30,8 @@ Wavelengths carried(const std::vector<float>& wavelengths) {
 // A place on no shape: what a BSDF alone is asked at.
 constexpr TexturePoint middle = {{0.5f, 0.5f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
 
-// Calls fn with what gives the values of the material's BSDF at the wavelengths, by the seed of its streams.
+// Calls fn with what gives the values of the material's BSDF at the wavelengths for a direction of view, by the seed of
+// its streams.
 template <class Fn>
 void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, Fn&& fn) {
   const SceneView& view = scene.accel.view();
@@ -38,8 +39,8 @@ void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<fl
   const Tagged bsdf = view.materials[material].bsdf;
   dispatch(Bsdfs{}, bsdf.tag, [&](auto type) {
     const Wavelengths wl = carried(wavelengths);
-    fn([&](uint32_t seed) {
-      return view.as<typename decltype(type)::type>(bsdf).at({view, wl, middle, lanes(1.0f), seed});
+    fn([&](Vec3 wo, uint32_t seed) {
+      return view.as<typename decltype(type)::type>(bsdf).at({view, wl, middle, lanes(1.0f), seed, wo.z < 0.0f});
     });
     return true;
   });
@@ -62,7 +63,7 @@ nb::dict bsdf_sample(const LoadedScene& scene, uint32_t material, const std::vec
   with_bsdf(scene, material, wavelengths, [&](const auto& bsdf_by) {
     for (size_t i = 0; i < wo.shape(0); ++i) {
       const Vec3 numbers = row(u, i);
-      const auto bsdf = bsdf_by(seed_of(seed, row(wo, i), numbers));
+      const auto bsdf = bsdf_by(row(wo, i), seed_of(seed, row(wo, i), numbers));
       const BsdfSample s = bsdf.sample(row(wo, i), numbers.z, {numbers.x, numbers.y});
       put(wi, s.wi);
       put(weight, s.weight);
@@ -86,7 +87,7 @@ nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vect
   std::vector<float> value, pdf;
   with_bsdf(scene, material, wavelengths, [&](const auto& bsdf_by) {
     for (size_t i = 0; i < wo.shape(0); ++i) {
-      const auto bsdf = bsdf_by(hash(seed, static_cast<uint32_t>(i)));
+      const auto bsdf = bsdf_by(row(wo, i), hash(seed, static_cast<uint32_t>(i)));
       put(value, bsdf.eval(row(wo, i), row(wi, i)));
       pdf.push_back(bsdf.pdf(row(wo, i), row(wi, i)));
     }

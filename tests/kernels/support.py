@@ -79,32 +79,41 @@ class Bsdf:
     def __init__(self, core: Any, material: int, wavelengths: Sequence[float] = WAVELENGTHS) -> None:
         self._core, self._material, self._wavelengths = core, material, list(wavelengths)
 
-    def sample(self, wo: FloatArray, u: FloatArray) -> Samples:
-        """Samples for `u` (N, 3): two numbers for the direction and one for the lobe."""
+    def sample(self, wo: FloatArray, u: FloatArray, seed: int = 0) -> Samples:
+        """Samples for `u` (N, 3): two numbers for the direction and one for the lobe. A stochastic type draws more, by
+        `seed` and the row's own numbers.
+        """
         from accuray._core import probe
 
-        s = probe.bsdf_sample(self._core, self._material, self._wavelengths, single(wo), single(u))
+        s = probe.bsdf_sample(self._core, self._material, self._wavelengths, single(wo), single(u), seed)
         values = (s[key].astype(np.float64) for key in ("wi", "weight", "pdf", "eta_scale"))
         return Samples(*values, s["lobe"])
 
     def sample_one(self, wo: FloatArray, u: FloatArray) -> Samples:
         return self.sample(rows(wo, len(u)), u)
 
-    def eval(self, wo: FloatArray, wi: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Values f |cos theta_i| (N, 4) and the density of wi (N,)."""
+    def eval(self, wo: FloatArray, wi: FloatArray, seed: int = 0) -> tuple[FloatArray, FloatArray]:
+        """Values f |cos theta_i| (N, 4) and the density of wi (N,). Rows of a stochastic type are independent."""
         from accuray._core import probe
 
-        value, pdf = probe.bsdf_eval(self._core, self._material, self._wavelengths, single(wo), single(wi))
+        value, pdf = probe.bsdf_eval(self._core, self._material, self._wavelengths, single(wo), single(wi), seed)
         return value.astype(np.float64), pdf.astype(np.float64)
 
     def eval_one(self, wo: FloatArray, wi: FloatArray) -> tuple[FloatArray, FloatArray]:
         return self.eval(rows(wo, len(wi)), wi)
 
 
-def bsdfs(materials: Sequence[Mapping[str, Any]]) -> list[Bsdf]:
-    """The BSDF of each material, all lowered in one scene."""
-    core = load({"materials": {f"m{i:04}": dict(material) for i, material in enumerate(materials)}})
-    return [Bsdf(core, i) for i in range(len(materials))]
+def bsdfs(materials: Sequence[Mapping[str, Any]], wavelengths: Sequence[float] = WAVELENGTHS) -> list[Bsdf]:
+    """The BSDF of each material, all lowered in one scene. A material's `base` is written out in its place."""
+    named: dict[str, dict[str, Any]] = {}
+    for i, material in enumerate(materials):
+        named[f"m{i:04}"] = dict(material)
+        if "base" in material:
+            named[f"b{i:04}"] = dict(material["base"])
+            named[f"m{i:04}"]["base"] = f"b{i:04}"
+    number = {name: i for i, name in enumerate(sorted(named))}  # bases come first, by their names and by their use
+    core = load({"materials": named})
+    return [Bsdf(core, number[f"m{i:04}"], wavelengths) for i in range(len(materials))]
 
 
 def uniform(count: int, dimensions: int, seed: int) -> FloatArray:

@@ -22,7 +22,7 @@ from accuray.testing import (
     types_of,
 )
 from accuray.testing.stats import two_sided_threshold
-from tests.kernels.support import SEED, Bsdf, FloatArray, bsdfs, rows, uniform, unit
+from tests.kernels.support import SEED, WAVELENGTHS, Bsdf, FloatArray, bsdfs, rows, uniform, unit
 
 TABLES = {table["name"]: table for _, table in types_of(schema.tables(), "bsdf")}
 #: A spectrum that differs between the wavelengths of a path, by role.
@@ -44,7 +44,31 @@ MORE: dict[str, list[dict[str, Any]]] = {
         {"ior": 1.5, "film_thickness": 500},
         {"ior": 1.0, "film_thickness": 300},
     ],
+    "coated": [
+        {
+            "base": {"type": "diffuse", "reflectance": 0.8},
+            "roughness": 0.5,
+            "transmission_color": SPECTRAL["reflectance"],
+        },
+        {"base": {"type": "conductor", "metal": "Cu", "roughness": 0.5}, "roughness": 0.5},
+        {"base": {"type": "dielectric", "ior": 1.7, "roughness": 0.6}, "ior": 1.3, "roughness": 0.6},
+        {"base": {"type": "dielectric", "ior": "SF11", "roughness": 0.6}, "ior": 1.3},
+        {"base": {"type": "thin_dielectric", "ior": 1.6}, "roughness": 0.7},
+        {"base": {"type": "diffuse", "reflectance": 0.8}, "film_thickness": 500, "film_ior": 2.0},
+        {"base": {"type": "diffuse", "reflectance": 0.8}, "roughness": 0.5, "film_thickness": 300},
+    ],
 }
+#: What lies under a type that needs another, one after the other.
+BASES: list[dict[str, Any]] = [
+    {"type": "diffuse", "reflectance": 0.8},
+    {"type": "conductor", "metal": "Au", "roughness": 0.4},
+    {"type": "dielectric", "ior": 1.33},
+    {"type": "thin_dielectric"},
+    {"type": "diffuse", "reflectance": 0.5, "roughness": 1.0},
+    {"type": "conductor", "metal": "Ag"},
+    {"type": "sheen", "roughness": 0.7},
+    {"type": "dielectric", "ior": "SF11", "roughness": 0.5},
+]
 DIRECTIONS = {
     "0 deg": unit(0.0, 0.0, 1.0),
     "30 deg": unit(0.3, -0.4, 0.866),
@@ -72,9 +96,11 @@ TABLE_ERROR, FILM_ERROR = 1e-3, 0.03
 
 def materials(name: str, count: int = 24) -> list[dict[str, Any]]:
     """Parameter sets of a type, the spectral ones last."""
-    params = [p for p in TABLES[name]["params"] if p["name"] not in BODY]
+    links = [p["name"] for p in TABLES[name]["params"] if p["role"] == "material"]
+    params = [p for p in TABLES[name]["params"] if p["name"] not in (*BODY, *links)]
     table = TABLES[name] | {"params": [p | {"max": THICKEST} if p["name"] == "film_thickness" else p for p in params]}
     sets = parameter_sets(table, count, seed=SEED, texts={"metal": tuple(data.metals())})
+    sets = [values | {link: BASES[i % len(BASES)] for link in links} for i, values in enumerate(sets)]
     for values in sets:
         if "reflectance" in values:  # no film lies on a colour
             values.pop("film_thickness", None)
@@ -143,14 +169,17 @@ def test_samples_follow_the_density(name: str, number: int, direction: str, samp
 
 @each_type
 def test_weight_is_eval_over_pdf(name: str) -> None:
-    """For every sample that is not specular, and the density is the one that pdf() gives for its direction."""
+    """For every sample that is not specular, and the density is the one that pdf() gives for its direction. The values
+    of a stochastic type are compared in expectation, below.
+    """
     for material, bsdf in zip(materials(name), bsdfs(materials(name)), strict=True):
         wo = random_directions(2000, SEED)
         s = bsdf.sample(wo, uniform(len(wo), 3, SEED))
         smooth = s.succeeded & ~s.specular
         value, pdf = bsdf.eval(wo, s.wi)
         assert np.allclose(pdf[smooth], s.pdf[smooth], rtol=1e-4, atol=1e-9), material
-        assert np.allclose(value[smooth], (s.weight * s.pdf[:, None])[smooth], rtol=1e-4, atol=1e-9), material
+        if not claims(name, "stochastic"):
+            assert np.allclose(value[smooth], (s.weight * s.pdf[:, None])[smooth], rtol=1e-4, atol=1e-9), material
         assert (s.pdf[s.specular] == 0.0).all(), "a delta lobe has no density"
         assert (s.weight[~s.succeeded] == 0.0).all(), "a failed sample has weight 0"
         assert np.allclose(np.linalg.norm(s.wi[s.succeeded], axis=1), 1.0, atol=UNIT_ERROR), material
@@ -158,6 +187,8 @@ def test_weight_is_eval_over_pdf(name: str) -> None:
 
 @each_type
 def test_the_mean_weight_is_the_integral_of_eval(name: str) -> None:
+    if claims(name, "stochastic"):
+        pytest.skip("compared cell by cell, below")
     chosen = materials(name)[:: max(1, len(materials(name)) // 3)]
     for material, bsdf in zip(chosen, bsdfs(chosen), strict=True):
         for wo in DIRECTIONS.values():
@@ -170,6 +201,47 @@ def test_the_mean_weight_is_the_integral_of_eval(name: str) -> None:
                 lambda wi, at=bsdf, o=wo: at.eval_one(o, wi)[0][:, 0], resolution=(16, 32), tolerance=1e-4
             )
             assert abs(weight.mean() - integral) <= 4.5 * error + 1e-3, (material, wo)
+
+
+STOCHASTIC = [(name, i) for name in TABLES if claims(name, "stochastic") for i in range(len(MORE[name]))]
+CELLS = (8, 8)
+DRAWS = 20_000
+
+
+def in_cells(values: FloatArray, directions: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Mean and its variance of what falls into each cell of the sphere (along z, around z), and how often that is."""
+    along = np.clip((0.5 * (directions[:, 2] + 1.0) * CELLS[0]).astype(int), 0, CELLS[0] - 1)
+    turn = np.arctan2(directions[:, 1], directions[:, 0]) / (2.0 * np.pi) + 0.5
+    cell = along * CELLS[1] + np.clip((turn * CELLS[1]).astype(int), 0, CELLS[1] - 1)
+    count, size = len(values), CELLS[0] * CELLS[1]
+    mean = np.bincount(cell, values, size) / count
+    square = np.bincount(cell, values**2, size) / count
+    return mean, (square - mean**2) / count, np.bincount(cell, values > 0.0, size)
+
+
+@pytest.mark.parametrize("direction", ["30 deg", "85 deg", "behind 20 deg"])
+@pytest.mark.parametrize(("name", "number"), STOCHASTIC)
+def test_samples_follow_the_values_in_expectation(name: str, number: int, direction: str) -> None:
+    """Weights of samples, cell by cell, are the integral of eval() there. One wavelength is followed while each of the
+    four is the hero, since after a dispersion the hero stands for all.
+    """
+    wo = DIRECTIONS[direction]
+    sampled, evaluated = [], []
+    wi = random_directions(DRAWS, SEED)
+    for hero in range(4):
+        bsdf = bsdfs([{"type": name, **MORE[name][number]}], WAVELENGTHS[hero:] + WAVELENGTHS[:hero])[0]
+        s = bsdf.sample_one(wo, uniform(DRAWS, 3, SEED + hero))
+        share = np.where(s.disperses, 4.0 if hero == 0 else 0.0, 1.0)
+        sampled.append((np.where(s.specular, 0.0, s.weight[:, -hero] * share), s.wi))
+        evaluated.append((4.0 * np.pi * bsdf.eval(rows(wo, DRAWS), wi, seed=SEED + hero)[0][:, -hero], wi))
+    (a, va, na), (b, vb, nb) = (
+        in_cells(*(np.concatenate(x) for x in zip(*e, strict=True))) for e in (sampled, evaluated)
+    )
+    told = np.minimum(na, nb) >= 50
+    assert a[told].sum() > 0.5 * a.sum(), "no power"
+    z = np.abs(a - b)[told] / np.sqrt(va + vb)[told]
+    threshold = two_sided_threshold(sidak(0.01, 3 * len(STOCHASTIC) * a.size))
+    assert z.max() <= threshold, f"seed {SEED}, {MORE[name][number]}: {z.max():.3g} standard errors"
 
 
 # --- Energy -------------------------------------------------------------------------------------------------------
@@ -209,6 +281,14 @@ LOSSLESS: dict[str, list[dict[str, Any]]] = {
     + [{"ior": n, "roughness": r} for n in (0.05, 0.7, 1.01, 1.5, 4.0, "SF11") for r in ROUGH]
     + [{"ior": n, "film_thickness": d, "film_ior": f} for n, d, f in FILMS],
     "thin_dielectric": [{"ior": n} for n in (0.5, 1.0, 1.5, "SF11")],
+    "coated": [
+        {"base": {"type": "diffuse", "reflectance": 1.0}},
+        {"base": {"type": "diffuse", "reflectance": 1.0}, "roughness": 0.5},
+        {"base": {"type": "conductor", "metal": "perfect", "roughness": 0.5}, "roughness": 0.5},
+        {"base": {"type": "dielectric", "ior": 1.2}},
+        {"base": {"type": "dielectric", "ior": "SF11", "roughness": 0.5}, "ior": 1.3},
+        {"base": {"type": "thin_dielectric", "ior": 1.7}, "roughness": 0.5},
+    ],
 }
 
 
@@ -234,8 +314,8 @@ def test_what_absorbs_nothing_returns_everything(name: str) -> None:
 @each_type
 def test_light_goes_both_ways_alike(name: str) -> None:
     """f(wo, wi) = f(wi, wo), over 1e5 pairs of directions for each set; 0 = 0 for delta lobes, which come below."""
-    if not claims(name, "reciprocal"):
-        pytest.skip("not claimed")
+    if not claims(name, "reciprocal") or claims(name, "stochastic"):
+        pytest.skip("not claimed, or in expectation only: see below")
     sets = materials(name)[:6]
     for material, bsdf in zip(sets, bsdfs(sets), strict=True):
 
@@ -244,6 +324,27 @@ def test_light_goes_both_ways_alike(name: str) -> None:
 
         eta = float(material["ior"]) if isinstance(material.get("ior"), float) else 1.0
         assert reciprocity_error(f, pairs=100_000, seed=SEED, eta=eta) <= 1e-5, material
+
+
+@pytest.mark.parametrize(("name", "number"), STOCHASTIC)
+def test_light_goes_both_ways_alike_in_expectation(name: str, number: int) -> None:
+    material = {"type": name, **MORE[name][number]}
+    behind = material["base"].get("ior", 1.0) if material["base"]["type"] == "dielectric" else 1.0
+    if not claims(name, "reciprocal") or isinstance(behind, str):
+        pytest.skip("not claimed, or the hero stands for all")
+    bsdf, pairs, count = bsdfs([material])[0], 16, 4000
+    a, b = (random_directions(pairs, SEED + i) for i in (0, 1))
+    measured = []
+    for wo, wi, seed in ((a, b, 2 * SEED), (b, a, 2 * SEED + 1)):
+        value = bsdf.eval(np.repeat(wo, count, axis=0), np.repeat(wi, count, axis=0), seed)[0][:, 0].reshape(
+            pairs, count
+        )
+        scale = np.where(wo[:, 2] < 0.0, behind, 1.0) ** 2 * np.abs(wi[:, 2])
+        measured.append((value.mean(axis=1) / scale, value.var(axis=1, ddof=1) / count / scale**2))
+    (there, error), (back, error_back) = measured
+    assert (there > 0.0).any()
+    allowed = two_sided_threshold(sidak(0.01, pairs * len(STOCHASTIC))) * np.sqrt(error + error_back) + 1e-5
+    assert (np.abs(there - back) <= allowed).all(), f"seed {SEED}, {material}"
 
 
 LOBE_STEPS = 4096
@@ -317,7 +418,8 @@ def test_nothing_breaks_at_grazing_angles(name: str) -> None:
                 assert np.isfinite(values).all(), f"{what} at z = {z}: {material}"
                 assert what == "wi" or (values >= 0.0).all(), f"{what} at z = {z}: {material}"
             energy = s.weight[:, :1] * s.eta_scale[:, None]
-            assert not claims(name, "energy_conserving") or energy.max() <= 8.0, f"a firefly at z = {z}: {material}"
+            most = 32.0 if claims(name, "stochastic") else 8.0  # a walk multiplies the weights of several events
+            assert not claims(name, "energy_conserving") or energy.max() <= most, f"a firefly at z = {z}: {material}"
 
 
 @each_type

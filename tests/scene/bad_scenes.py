@@ -185,6 +185,57 @@ NAMES = [
     ),
 ]
 
+PAINT = '[materials.paint]\ntype = "diffuse"\n'
+COATS = [
+    scene("coat-without-base", '[materials.m]\ntype = "coated"\n', "materials.m", "lacks `base`", "reference"),
+    scene(
+        "coat-on-nothing",
+        PAINT + '[materials.m]\ntype = "coated"\nbase = "pain"\n',
+        "scene.toml:6: materials.m.base",
+        '"pain" is not a known material',
+        'did you mean "paint"',
+    ),
+    scene(
+        "coat-on-a-coat",
+        PAINT + '[materials.m]\ntype = "coated"\nbase = "paint"\n[materials.n]\ntype = "coated"\nbase = "m"\n',
+        "scene.toml:9: materials.n.base",
+        '"m" is coated itself',
+        "one layer",
+    ),
+    scene(
+        "coat-on-itself",
+        '[materials.m]\ntype = "coated"\nbase = "m"\n',
+        "scene.toml:4: materials.m.base",
+        "leads back to itself: m -> m",
+    ),
+    scene(
+        "coats-on-each-other",
+        '[materials.m]\ntype = "coated"\nbase = "n"\n[materials.n]\ntype = "coated"\nbase = "m"\n',
+        "scene.toml:4: materials.m.base",
+        "leads back to itself: m -> n -> m",
+    ),
+    scene(
+        "coat-on-a-lamp",
+        PAINT + 'emission = 1\n[materials.m]\ntype = "coated"\nbase = "paint"\n',
+        "scene.toml:7: materials.m.base",
+        '"paint" has `emission`',
+        "give it to the coat",
+    ),
+    scene(
+        "coat-on-a-veil",
+        PAINT + 'opacity = 0.5\n[materials.m]\ntype = "coated"\nbase = "paint"\n',
+        "scene.toml:7: materials.m.base",
+        '"paint" has `opacity`',
+    ),
+    scene(
+        "coat-index-below-1",
+        PAINT + '[materials.m]\ntype = "coated"\nbase = "paint"\nior = 0.9\n',
+        "scene.toml:7: materials.m.ior",
+        "0.9 is out of range",
+        "1 to 3",
+    ),
+]
+
 VALUES = [
     scene(
         "width-zero", "[film]\nwidth = 0\n", "scene.toml:3: film.width: 0 is out of range", "1 to 65536", "width = 0"
@@ -508,5 +559,5 @@ MESHES = [
 ]
 
 BAD_SCENES: list[BadScene] = [
-    *SYNTAX, *NAMES, *VALUES, *SPECTRA, *SPECTRUM_FILES, *FILES, *INCLUDES, *OVERRIDES, *MESHES,
+    *SYNTAX, *NAMES, *COATS, *VALUES, *SPECTRA, *SPECTRUM_FILES, *FILES, *INCLUDES, *OVERRIDES, *MESHES,
 ]  # fmt: skip

@@ -52,12 +52,15 @@ struct BaseAt {
   uint32_t tag;
   AnyValues<Bases> values;
 
-  static BaseAt of(Tagged base, const ShadingPoint& p) {
+  // Under a layer of this index, which does not lie before the back of what lets no light through.
+  ACCURAY_NOINLINE static BaseAt of(Tagged base, const ShadingPoint& p, Spectrum layer) {
     BaseAt at;
     at.tag = base.tag;
+    const ShadingPoint under = {p.scene, p.wl,    p.where, p.behind && !at.transmits() ? p.exterior : layer,
+                                p.seed,  p.behind};
     dispatch(Bases{}, base.tag, [&](auto type) {
       using Bsdf = typename decltype(type)::type;
-      at.values.template set<Bsdf>(p.scene.as<Bsdf>(base).at(p));
+      at.values.template set<Bsdf>(p.scene.as<Bsdf>(base).at(under));
     });
     return at;
   }
@@ -76,25 +79,6 @@ struct BaseAt {
   // Whether light goes through to its back.
   bool transmits() const {
     return dispatch(Bases{}, tag, [](auto type) { return requires { decltype(type)::type::transmits; }; });
-  }
-  Spectrum eval(Vec3 wo, Vec3 wi) const {
-    return visit([&](const auto& base) { return base.eval(wo, wi); });
-  }
-  float pdf(Vec3 wo, Vec3 wi) const {
-    return visit([&](const auto& base) { return base.pdf(wo, wi); });
-  }
-  // By lane, if each were the hero.
-  Spectrum pdfs(Vec3 wo, Vec3 wi) const {
-    return visit([&](const auto& base) {
-      if constexpr (requires { base.pdfs(wo, wi); }) {
-        return base.pdfs(wo, wi);
-      } else {
-        return lanes(base.pdf(wo, wi));
-      }
-    });
-  }
-  BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
-    return visit([&](const auto& base) { return base.sample(wo, u_lobe, u); });
   }
 };
 

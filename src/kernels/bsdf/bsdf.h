@@ -26,9 +26,10 @@ namespace accuray {
 struct ShadingPoint {
   const SceneView& scene;
   const Wavelengths& wl;
-  TexturePoint where;  // set for materials whose record says that they read it
-  Spectrum exterior;   // index of refraction on the front side
-  uint32_t seed = 0;   // of the streams that a stochastic BSDF draws from
+  TexturePoint where;   // set for materials whose record says that they read it
+  Spectrum exterior;    // index of refraction on the front side
+  uint32_t seed = 0;    // of the streams that a stochastic BSDF draws from
+  bool behind = false;  // the path comes from behind the surface
 
   Spectrum spectrum(SpectrumRef ref) const {
     const SpectrumRecord& s = scene.spectra[ref.index];

@@ -52,7 +52,7 @@ struct CoatDensity {
     float rest = 1.0f;
     if (above) {
       rest = 1.0f - reflected(wo.z, index);
-      if (same) result = layer.top.pdf(wo, wi);
+      if (same && !layer.top.is_delta()) result = coat_lobes(layer, true, wo, wi).pdf[0];
     }
     if (layer.base.transmits()) {
       const float back = reflected(abs(wo.z), above ? base.behind : 1.0f / base.behind);
@@ -100,8 +100,8 @@ struct CoatDensity {
       if (o.z == 0.0f || i.z == 0.0f) return 0.0f;
       scale = abs(wi.z) / (i.z * e_i * e_i);
     }
-    if (o.z == 0.0f) return 0.0f;
-    return 0.5f * facets.density(o + i) / (o.z + facets.root(o)) * scale;
+    const Vec3 half = {o.x + i.x, o.y + i.y, max(o.z + i.z, 0x1p-50f)};
+    return 0.5f * facets.density(half) / (o.z + facets.root(o)) * scale;
   }
 };
 

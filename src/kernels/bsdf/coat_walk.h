@@ -25,10 +25,18 @@ struct CoatLayer {
   uint32_t seed;
 
   bool is_delta(bool at_top) const { return at_top ? top.is_delta() : base.is_delta(); }
-  Spectrum eval(bool at_top, Vec3 wo, Vec3 wi) const { return at_top ? top.eval(wo, wi) : base.eval(wo, wi); }
-  Spectrum pdfs(bool at_top, Vec3 wo, Vec3 wi) const { return at_top ? top.pdfs(wo, wi) : base.pdfs(wo, wi); }
-  BsdfSample sample(bool at_top, Vec3 wo, Vec3 u) const {
-    return at_top ? top.sample(wo, u.z, {u.x, u.y}) : base.sample(wo, u.z, {u.x, u.y});
+
+  // Calls fn with the values of the interface. The upper one is a dielectric like one of the bases.
+  template <class Fn>
+  ACCURAY_INLINE auto visit(bool at_top, Fn&& fn) const {
+    return dispatch(Bases{}, at_top ? tag_of<Dielectric>(Bases{}) : base.tag, [&](auto type) {
+      using Bsdf = typename decltype(type)::type;
+      if constexpr (is_same<Bsdf, Dielectric>) {
+        return fn(at_top ? top : base.values.template get<Dielectric>());
+      } else {
+        return fn(base.values.template get<Bsdf>());
+      }
+    });
   }
   // Share that one crossing leaves, in a direction of this cosine.
   Spectrum left(float cosine) const {
@@ -39,20 +47,28 @@ struct CoatLayer {
     }
     return result;
   }
-  // What leads through the interface from outside. A smooth upper interface leaves no choice but to refract.
-  BsdfSample through(bool at_top, Vec3 w, Vec3 u) const {
-    BsdfSample s;
-    if (at_top && top.is_delta()) {
-      const Spectrum eta = top.rough.ior;
-      const float chance = chance_for_all(fresnel_dielectric(abs(w.z), eta), hero_only);
-      s = top.sample(w, one_minus_epsilon, {u.x, u.y});
-      s.weight *= 1.0f - chance;
-    } else {
-      s = sample(at_top, w, u);
-    }
-    return (s.lobe & lobe_transmission) != 0 ? s : no_sample();
-  }
 };
+
+// A sample of one of the interfaces.
+ACCURAY_NOINLINE inline BsdfSample coat_event(const CoatLayer& layer, bool at_top, Vec3 wo, Vec3 u) {
+  return layer.visit(at_top, [&](const auto& at) { return at.sample(wo, u.z, {u.x, u.y}); });
+}
+
+struct CoatLobes {
+  Spectrum value;
+  Spectrum pdf;  // if each lane were the hero
+};
+
+// Value and density of one of the interfaces.
+ACCURAY_NOINLINE inline CoatLobes coat_lobes(const CoatLayer& layer, bool at_top, Vec3 wo, Vec3 wi) {
+  return layer.visit(at_top, [&](const auto& at) {
+    if constexpr (requires { at.pdfs(wo, wi); }) {
+      return CoatLobes{at.eval(wo, wi), at.pdfs(wo, wi)};
+    } else {
+      return CoatLobes{at.eval(wo, wi), lanes(at.pdf(wo, wi))};
+    }
+  });
+}
 
 // A walk's own stream of numbers.
 struct CoatNumbers {
@@ -80,6 +96,19 @@ inline bool goes_on(Spectrum& weight, float eta_scale, uint32_t event, CoatNumbe
   return true;
 }
 
+// What leads through the interface from outside. A smooth upper interface leaves no choice but to refract.
+inline BsdfSample coat_entry(const CoatLayer& layer, bool at_top, Vec3 w, Vec3 u) {
+  float share = 1.0f;
+  if (at_top && layer.top.is_delta()) {
+    share = 1.0f - chance_for_all(layer.top.rough.reflectance(abs(w.z), true), layer.hero_only);
+    u.z = one_minus_epsilon;
+  }
+  BsdfSample s = coat_event(layer, at_top, w, u);
+  if ((s.lobe & lobe_transmission) == 0) return no_sample();
+  s.weight *= share;
+  return s;
+}
+
 // The walk itself. The first numbers are given; a mirror leaves two of them to the event that follows.
 ACCURAY_NOINLINE inline BsdfSample coat_sample(const CoatLayer& layer, Vec3 wo, float u_lobe, Vec2 u) {
   CoatNumbers numbers{hash(layer.seed, static_cast<uint32_t>(CoatStream::sample))};
@@ -88,7 +117,7 @@ ACCURAY_NOINLINE inline BsdfSample coat_sample(const CoatLayer& layer, Vec3 wo, 
   Vec3 w = wo;
   bool at_top = wo.z > 0.0f;
   for (uint32_t event = 0;; ++event) {
-    const BsdfSample s = layer.sample(at_top, w, u_event);
+    const BsdfSample s = coat_event(layer, at_top, w, u_event);
     if (is_black(s.weight) || s.wi.z == 0.0f) return no_sample();
     result.weight *= s.weight;
     result.eta_scale *= s.eta_scale;
@@ -106,13 +135,16 @@ ACCURAY_NOINLINE inline BsdfSample coat_sample(const CoatLayer& layer, Vec3 wo, 
   }
 }
 
+// Share of the first of two techniques by the power heuristic, by lane.
+inline Spectrum share_of(float pdf, Spectrum other) { return pdf * pdf / (pdf * pdf + other * other); }
+
 // Light from wi that reaches wo in any way but by mirrors alone. Where the walk is at the interface that leads out to
 // wi it scatters there; where it is at the other, light comes straight from the way in that was chosen for wi. Both
 // find the same paths where both interfaces are rough, and are weighted by the power heuristic then.
 ACCURAY_NOINLINE inline Spectrum coat_eval(const CoatLayer& layer, Vec3 wo, Vec3 wi) {
   CoatNumbers numbers{hash(layer.seed, static_cast<uint32_t>(CoatStream::eval))};
   const bool exit_top = wi.z > 0.0f;
-  const BsdfSample in = layer.through(exit_top, wi, numbers.three());
+  const BsdfSample in = coat_entry(layer, exit_top, wi, numbers.three());
   const bool in_is_delta = layer.is_delta(exit_top);
   const bool found_in = !is_black(in.weight) && in.wi.z != 0.0f;
   const Spectrum arriving =
@@ -125,24 +157,21 @@ ACCURAY_NOINLINE inline Spectrum coat_eval(const CoatLayer& layer, Vec3 wo, Vec3
   Vec3 w = wo;
   bool at_top = wo.z > 0.0f;
   for (uint32_t event = 0;; ++event) {
-    if (at_top == exit_top) {
-      if (!in_is_delta) {
-        Spectrum scattered = weight * layer.eval(at_top, w, wi);
-        if (pdf > 0.0f) {
-          const Spectrum other = layer.pdfs(at_top, wi, w);
-          scattered *= pdf * pdf / (pdf * pdf + other * other);
-        }
-        value += scattered;
+    // Here the walk may scatter towards the light, along wi or along the way in.
+    const bool last = at_top == exit_top;
+    if (!layer.is_delta(at_top) && (last || found_in)) {
+      const CoatLobes here = coat_lobes(layer, at_top, w, last ? wi : -in.wi);
+      Spectrum scattered = weight * here.value;
+      if (last) {
+        if (pdf > 0.0f) scattered *= share_of(pdf, coat_lobes(layer, at_top, wi, w).pdf);
+      } else {
+        scattered *= arriving;
+        if (!in_is_delta) scattered *= share_of(in.pdf, here.pdf);
+        if (!hero && (in.lobe & lobe_disperses) != 0) scattered = keep_hero(scattered);
       }
-    } else if (found_in && !layer.is_delta(at_top)) {
-      Spectrum scattered = weight * layer.eval(at_top, w, -in.wi) * arriving;
-      if (!in_is_delta) {
-        const Spectrum other = layer.pdfs(at_top, w, -in.wi);
-        scattered *= in.pdf * in.pdf / (in.pdf * in.pdf + other * other);
-      }
-      value += !hero && (in.lobe & lobe_disperses) != 0 ? keep_hero(scattered) : scattered;
+      value += scattered;
     }
-    const BsdfSample s = layer.sample(at_top, w, numbers.three());
+    const BsdfSample s = coat_event(layer, at_top, w, numbers.three());
     if (is_black(s.weight) || s.wi.z == 0.0f || (s.wi.z > 0.0f) == at_top) return value;
     weight *= s.weight * layer.left(abs(s.wi.z));
     eta_scale *= s.eta_scale;

@@ -7,35 +7,28 @@
 
 #include "kernels/bsdf/coat_density.h"
 #include "kernels/bsdf/coat_walk.h"
-#include "kernels/bsdf/rough_params.h"
 
 namespace accuray {
 
 struct CoatedAt {
   CoatLayer layer;
   uint32_t lobe;
-  // For the back of an opaque base, which has no layer before it.
-  const SceneView* scene;
-  Tagged record;
-  Wavelengths wl;
-  TexturePoint where;
-  Spectrum exterior;
 
   bool is_delta() const { return layer.top.is_delta() && layer.base.is_delta(); }
 
   Spectrum eval(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f) return lanes(0.0f);
-    if (is_bare(wo)) return bare().eval(wo, wi);
+    if (is_bare(wo)) return coat_lobes(layer, false, wo, wi).value;
     if ((wo.z > 0.0f) != (wi.z > 0.0f) && !layer.base.transmits()) return lanes(0.0f);
     return coat_eval(layer, wo, wi);
   }
   float pdf(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f || is_delta()) return 0.0f;
-    return is_bare(wo) ? bare().pdf(wo, wi) : coat_pdf(layer, wo, wi);
+    return is_bare(wo) ? coat_lobes(layer, false, wo, wi).pdf[0] : coat_pdf(layer, wo, wi);
   }
   BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
     if (wo.z == 0.0f) return no_sample();
-    if (is_bare(wo)) return bare().sample(wo, u_lobe, u);
+    if (is_bare(wo)) return coat_event(layer, false, wo, {u.x, u.y, u_lobe});
     BsdfSample s = coat_sample(layer, wo, u_lobe, u);
     if (is_black(s.weight)) return s;
     const bool crosses = (s.wi.z > 0.0f) != (wo.z > 0.0f);
@@ -52,16 +45,15 @@ struct CoatedAt {
   }
 
  private:
+  // The back of an opaque base has no layer before it.
   bool is_bare(Vec3 wo) const { return wo.z < 0.0f && !layer.base.transmits(); }
-  ACCURAY_NOINLINE BaseAt bare() const { return BaseAt::of(record, {*scene, wl, where, exterior, layer.seed}); }
 };
 
 struct Coated {
   Tagged base;
   RealRef ior;
-  RealRef roughness, anisotropy;
-  uint32_t compensate;
   SpectrumRef transmission_color;
+  InterfaceParameters interface;
 
   static constexpr const char* name = "coated";
   static constexpr const char* doc =
@@ -69,59 +61,63 @@ struct Coated {
       "surface and the base.";
   static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true, .stochastic = true};
   static constexpr auto params() {
-    return param_list(
-        Param{.name = "base",
-              .kind = Kind::reference,
-              .doc = "Material under the layer: not coated itself, and without emission, opacity, normal or bump map, "
-                     "which belong to the coat.",
-              .role = "material",
-              .required = true,
-              .member = ACCURAY_OFFSET_OF(Coated, base)},
-        Param{.name = "ior",
-              .kind = Kind::real,
-              .doc = "Index of the layer relative to what is before it, or absolute if the base has a priority. One "
-                     "number: between parallel faces light is not dispersed.",
-              .preset = "1.5",
-              .low = 1,
-              .high = 3,
-              .unit = "1",
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Coated, ior)},
-        Param{.name = "transmission_color",
-              .kind = Kind::spectrum,
-              .doc = "Share of the light that is left after crossing the layer straight; of slanted ways, which are "
-                     "longer, less is left.",
-              .preset = "1",
-              .low = 0,
-              .high = 1,
-              .unit = "1",
-              .role = "reflectance",
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Coated, transmission_color)},
-        roughness_param(ACCURAY_OFFSET_OF(Coated, roughness)), anisotropy_param(ACCURAY_OFFSET_OF(Coated, anisotropy)),
-        compensate_param(ACCURAY_OFFSET_OF(Coated, compensate)));
+    return joined(
+        param_list(
+            Param{.name = "base",
+                  .kind = Kind::reference,
+                  .doc =
+                      "Material under the layer: not coated itself, and without emission, opacity, normal or bump map, "
+                      "which belong to the coat.",
+                  .role = "material",
+                  .required = true,
+                  .member = ACCURAY_OFFSET_OF(Coated, base)},
+            Param{.name = "ior",
+                  .kind = Kind::real,
+                  .doc =
+                      "Index of the layer relative to what is before it, or absolute if the base has a priority. One "
+                      "number: between parallel faces light is not dispersed.",
+                  .preset = "1.5",
+                  .low = 1,
+                  .high = 3,
+                  .unit = "1",
+                  .texturable = true,
+                  .animatable = true,
+                  .member = ACCURAY_OFFSET_OF(Coated, ior)},
+            Param{.name = "transmission_color",
+                  .kind = Kind::spectrum,
+                  .doc =
+                      "Share of the light that is left after crossing the layer straight; of slanted ways, which are "
+                      "longer, less is left.",
+                  .preset = "1",
+                  .low = 0,
+                  .high = 1,
+                  .unit = "1",
+                  .role = "reflectance",
+                  .texturable = true,
+                  .animatable = true,
+                  .member = ACCURAY_OFFSET_OF(Coated, transmission_color)}),
+        InterfaceParameters::params(ACCURAY_OFFSET_OF(Coated, interface)));
   }
-  bool oriented() const { return is_stretched(anisotropy); }
+  bool oriented() const { return interface.oriented(); }
 
-  CoatedAt at(const ShadingPoint& p) const { return make(p.scene, p.wl, p.where, p.exterior, p.seed); }
+  CoatedAt at(const ShadingPoint& p) const { return make(p.scene, p.wl, p.where, p.exterior, p.seed, p.behind); }
 
  private:
   // Takes parts of a path by value, like whatever is kept out of the paths of other scenes (texture/list.h).
   ACCURAY_NOINLINE CoatedAt make(const SceneView& scene, Wavelengths wl, TexturePoint where, Spectrum exterior,
-                                 uint32_t seed) const {
-    const ShadingPoint p = {scene, wl, where, exterior, seed};
+                                 uint32_t seed, bool behind) const {
+    const ShadingPoint p = {scene, wl, where, exterior, seed, behind};
     const Spectrum index = lanes(p.real(ior));
-    const Spectrum eta = index / exterior;
-    const bool disperses = eta[0] != eta[1] || eta[0] != eta[2] || eta[0] != eta[3];
-    const FacetsAt facets = FacetsAt::of(p, roughness, anisotropy, compensate);
     const Spectrum share = p.spectrum(transmission_color);
-    const bool clear = min(min(share[0], share[1]), min(share[2], share[3])) >= 1.0f;
-    const BaseAt under = BaseAt::of(base, {scene, wl, where, index, seed});
-    const uint32_t lobe = (under.lobe() & lobe_diffuse) != 0 ? lobe_diffuse : lobe_glossy;
-    const DielectricAt top = {{eta, disperses, wl.hero_only, facets.facets, facets.place}};
-    return {{top, under, share, clear, wl.hero_only, seed}, lobe, &scene, base, wl, where, exterior};
+    CoatedAt at;
+    at.layer.top = interface.at(p, index / exterior);
+    at.layer.base = BaseAt::of(base, p, index);
+    at.layer.share = share;
+    at.layer.clear = min(min(share[0], share[1]), min(share[2], share[3])) >= 1.0f;
+    at.layer.hero_only = wl.hero_only;
+    at.layer.seed = seed;
+    at.lobe = (at.layer.base.lobe() & lobe_diffuse) != 0 ? lobe_diffuse : lobe_glossy;
+    return at;
   }
 };
 

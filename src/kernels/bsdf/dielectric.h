@@ -48,12 +48,36 @@ struct DielectricAt {
   }
 };
 
-struct Dielectric {
-  SpectrumRef ior;
+// What interfaces are described by besides the indices on both sides.
+struct InterfaceParameters {
   RealRef roughness, anisotropy;
   uint32_t compensate;
   RealRef film_thickness;
   SpectrumRef film_ior;
+
+  // `member`: offset of these in the BSDF's struct.
+  static constexpr auto params(uint32_t member) {
+    return joined(param_list(roughness_param(member + ACCURAY_OFFSET_OF(InterfaceParameters, roughness)),
+                             anisotropy_param(member + ACCURAY_OFFSET_OF(InterfaceParameters, anisotropy)),
+                             compensate_param(member + ACCURAY_OFFSET_OF(InterfaceParameters, compensate))),
+                  film_params(member + ACCURAY_OFFSET_OF(InterfaceParameters, film_thickness),
+                              member + ACCURAY_OFFSET_OF(InterfaceParameters, film_ior)));
+  }
+  bool oriented() const { return is_stretched(anisotropy); }
+  // `eta`: index behind the interface over the one before it.
+  DielectricAt at(const ShadingPoint& p, Spectrum eta) const {
+    const bool disperses = eta[0] != eta[1] || eta[0] != eta[2] || eta[0] != eta[3];
+    const FacetsAt at = FacetsAt::of(p, roughness, anisotropy, compensate);
+    const FilmAt film = FilmAt::of(p, film_thickness, film_ior);
+    const bool even = at.facets.is_smooth() || !film.exists();
+    return {{eta, disperses, p.wl.hero_only, at.facets, at.place, film,
+             even ? lanes(1.0f) : film_on_diffuse_light(film, eta)}};
+  }
+};
+
+struct Dielectric {
+  SpectrumRef ior;
+  InterfaceParameters interface;
 
   static constexpr const char* name = "dielectric";
   static constexpr const char* doc =
@@ -100,22 +124,11 @@ struct Dielectric {
                          "surface is an interface by itself, and ior relative to whatever is around it.",
                   .preset = "0",
                   .low = 0,
-                  .high = 1e6},
-            roughness_param(ACCURAY_OFFSET_OF(Dielectric, roughness)),
-            anisotropy_param(ACCURAY_OFFSET_OF(Dielectric, anisotropy)),
-            compensate_param(ACCURAY_OFFSET_OF(Dielectric, compensate))),
-        film_params(ACCURAY_OFFSET_OF(Dielectric, film_thickness), ACCURAY_OFFSET_OF(Dielectric, film_ior)));
+                  .high = 1e6}),
+        InterfaceParameters::params(ACCURAY_OFFSET_OF(Dielectric, interface)));
   }
-  bool oriented() const { return is_stretched(anisotropy); }
-  DielectricAt at(const ShadingPoint& p) const {
-    const Spectrum relative = p.spectrum(ior) / p.exterior;
-    const bool disperses = relative[0] != relative[1] || relative[0] != relative[2] || relative[0] != relative[3];
-    const FacetsAt at = FacetsAt::of(p, roughness, anisotropy, compensate);
-    const FilmAt film = FilmAt::of(p, film_thickness, film_ior);
-    const bool even = at.facets.is_smooth() || !film.exists();
-    return {{relative, disperses, p.wl.hero_only, at.facets, at.place, film,
-             even ? lanes(1.0f) : film_on_diffuse_light(film, relative)}};
-  }
+  bool oriented() const { return interface.oriented(); }
+  DielectricAt at(const ShadingPoint& p) const { return interface.at(p, p.spectrum(ior) / p.exterior); }
 };
 
 }  // namespace accuray

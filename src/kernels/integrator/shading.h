@@ -15,8 +15,9 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
   const Spectrum before =
       material.interior == none ? lanes(1.0f) : exterior_ior(scene, material.interior, exterior, path.wl);
   const uint32_t seed = hash(path.sampler.key, path.sampler.index, path.depth, bsdf_stream);
-  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before, seed};
-  ShadingPoint point{scene, path.wl, texture_point(scene, path.hit, surface), before, seed};
+  const bool behind = leaves(path, surface);
+  if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before, seed, behind};
+  ShadingPoint point{scene, path.wl, texture_point(scene, path.hit, surface), before, seed, behind};
   point.where.footprint = footprint_on(surface, path);
   return point;
 }
