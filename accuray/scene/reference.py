@@ -67,7 +67,8 @@ Here Y = integral(L ybar) / integral(ybar), and L is in W m^-2 sr^-1 nm^-1.
 """
 
 _TEXTURES = """A parameter whose kind ends in "or texture" takes `{ texture = "NAME" }` as well, with `scale = number`
-to multiply it; one that is a number or an index of refraction takes `channel = "red"` (default), `"green"`, `"blue"` or `"alpha"`."""
+to multiply it; one that is a number or an index of refraction takes `channel = "red"` (default), `"green"`, `"blue"` or
+`"alpha"`."""
 
 
 def reference_markdown() -> str:

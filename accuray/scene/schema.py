@@ -13,8 +13,8 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Param:
-    """One parameter. ``min``, ``max`` and ``default`` are in the documented ``unit``; ``untextured`` says why it takes no
-    texture where one might be expected.
+    """One parameter. ``min``, ``max`` and ``default`` are in the documented ``unit``; ``untextured`` says why it takes
+    no texture where one might be expected.
     """
 
     name: str

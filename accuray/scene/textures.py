@@ -22,7 +22,7 @@ _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
 
 @dataclass(frozen=True)
 class TextureUse:
-    """A parameter's value that a texture gives: its colour, or for a number or an index one of its channels, times ``scale``.
+    """A parameter's value that a texture gives: its colour, or for a number one of its channels, times ``scale``.
 
     ``channel`` is "" for a colour, "map" for a normal or bump map.
     """
