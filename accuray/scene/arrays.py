@@ -93,7 +93,7 @@ def _rows(param: Param, value: Any, where: Where) -> FloatArray:
     if len(array) > MAX_ROWS:
         raise where.error(f"has {len(array)} rows", allowed=f"up to {MAX_ROWS}")
     if param.unit != "m":
-        _check_finite(array, where)
+        _check_numbers(param, array, where)
         array = np.pad(array, ((0, 0), (0, widths[-1] - width)), constant_values=1.0)
     else:
         array = scale_to_metres(array, where.source.length_unit)
@@ -118,15 +118,18 @@ def _check_rows(value: Any, width: int, where: Where, shape: str) -> None:
                 )
 
 
-def _check_finite(array: npt.NDArray[np.float64], where: Where) -> None:
+def _check_numbers(param: Param, array: npt.NDArray[np.float64], where: Where) -> None:
     import numpy as np
 
-    bad = np.argwhere(~np.isfinite(array))
-    if len(bad):
-        row, column = (int(index) for index in bad[0])
-        raise where.child(row, column).error(
-            "is not a finite number", value=float(array[row, column]), allowed="finite numbers"
-        )
+    least = -np.inf if param.min is None else param.min
+    for good, problem, allowed in (
+        (np.isfinite(array), "is not a finite number", "finite numbers"),
+        (array >= least, "is out of range", f"at least {least:g}"),
+    ):
+        bad = np.argwhere(~good)
+        if len(bad):
+            row, column = (int(index) for index in bad[0])
+            raise where.child(row, column).error(problem, value=float(array[row, column]), allowed=allowed)
 
 
 def _triangles(value: Any, where: Where) -> IndexArray:

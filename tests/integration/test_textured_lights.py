@@ -161,9 +161,10 @@ def instance(of: Table) -> Table:
         (POLES, instance({**BALL, "center": [0, 0, 0]})),
         (CHECKER, instance({**DISK, "center": [0, 0, 0]})),
         (CHECKER, instance(grid_mesh(2, 0.3, transform={"translate": [0, -1, 0]}))),
+        (HALF, {"bent": {**grid_mesh(1), "uvs": [[0.6, 0.9], [0.9, 0.6], [0.9, 0.9], [0, 0]]}}),
         (HALF, {"panel": PANEL, **instance({**BALL, "center": [0, 0, 0]})}),
     ],
-    ids=["sphere", "disk", "solid", "torus", "copied-sphere", "copied-disk", "copied-mesh", "two"],
+    ids=["sphere", "disk", "solid", "torus", "copied-sphere", "copied-disk", "copied-mesh", "bent", "two"],
 )  # fmt: skip
 def test_points_chosen_on_a_lamp_emit_what_paths_meet_there(texture: Table, shapes: Table) -> None:
     """The strategy that chooses points against the one that never does; mixing both must not matter either.

@@ -143,6 +143,7 @@ def test_a_shape_without_colours_is_named(shape: Table) -> None:
         ({"colors": [[1, 1, 1], [1, 1], [1, 1, 1]]}, "shapes.leaf.colors[1]", "is not a row of 3 numbers"),
         ({"colors": (255 * COLORS).astype(np.uint8)}, "shapes.leaf.colors", "is an array of uint8"),
         ({"colors": COLORS * np.nan}, "shapes.leaf.colors[0][0]", "is not a finite number"),
+        ({"colors": -COLORS}, "shapes.leaf.colors[0][0]", "is out of range"),
         ({"colors": 3}, "shapes.leaf.colors", "is not a list"),
         ({"colors": [3, 4, 5]}, "shapes.leaf.colors[0]", "is not a row"),
     ],

@@ -51,7 +51,7 @@ inline void widen_cone(Vec3 vertex, float pdf, Path& path) {
   if (pdf > 0.0f) path.cone.spread += lobe_spread(pdf);
 }
 
-// Diameter of the path's cone on a surface that it meets (Akenine-Moeller et al. 2021, "Improved Shader and Texture
+// Diameter of the path's cone on a surface that it meets (Akenine-Moller et al. 2021, "Improved Shader and Texture
 // Level of Detail Using Ray Cones").
 inline float footprint_on(const Surface& surface, const Path& path) {
   if (path.cone.is_ray()) return 0.0f;

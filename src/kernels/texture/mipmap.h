@@ -1,5 +1,5 @@
 // Mipmaps: a picture at half its size, at half of that, and so on to a single texel (Williams 1983), and the level at
-// which a texel is as large as what a ray stands for (Akenine-Moeller et al. 2021).
+// which a texel is as large as what a ray stands for (Akenine-Moller et al. 2021).
 //
 // Level 0 is the picture itself. Of a picture of w x h texels level k has max(1, w >> k) x max(1, h >> k), each the
 // mean in linear light of the part of the level before that it covers, so the mean of a picture is that of all its
