@@ -93,12 +93,20 @@ class Fair:
 
 UNKNOWN = Fair("as it is")
 FAIR = {
+    "aliasing": Fair("as it is: its light comes from everywhere"),
+    "area-and-point-light": Fair(
+        "the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3)
+    ),
     "closed-box": Fair("as it is: it glows everywhere"),
     "cornell-box": Fair("the lamp 4 times as wide and long, 1/16 as bright", partial(enlarged, lamp="lamp", factor=4)),
+    "colour-bleeding": Fair(
+        "the lamp 2.5 times as wide and long, 1/6.25 as bright", partial(enlarged, lamp="lamp", factor=2.5)
+    ),
     "depth-of-field": Fair(
         "the lamps in the background a tenth as bright", partial(dimmed, names=("warm", "cool"), factor=0.1)
     ),
     "furnace": Fair("as it is: its light comes from everywhere"),
+    "glass-and-texture": Fair("as it is: lamp and sky are large"),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "rough-metals": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "sphere-cavity": Fair("as it is: `reference` sums its point light plainly"),
