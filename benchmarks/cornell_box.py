@@ -31,7 +31,7 @@ MITSUBA = Contender("mitsuba", "llvm_ad_spectral", "multijitter")
 BLOCK = 8
 EXPOSURE = 1.5
 """Of the pictures, in EV: that of scenes/cornell-box.toml."""
-PICTURE_SIZE, PICTURE_SPP, PICTURE_IMAGES = 256, 512, 4
+PICTURE_SIZE, PICTURE_SPP, PICTURE_IMAGES = 160, 1536, 4
 BLOCK_SIZE, BLOCK_SPP = 48, 49152
 """Samples that bring the darkest blocks, in the shadow of the tall block, below 0.3 % in both renderers."""
 BLOCK_IMAGES, MITSUBA_SPP = 64, 1024
@@ -128,15 +128,17 @@ def main() -> int:
     """Prints the figures as JSON."""
     parser = argparse.ArgumentParser(description="Compares the Cornell box with Mitsuba's.")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder of the pictures (default: out)")
-    parser.add_argument("--pictures-only", action="store_true", help="leave the comparison of blocks out")
+    parser.add_argument("--only", choices=("picture", "blocks"), help="one of the two comparisons")
     arguments = parser.parse_args()
     if reason := peers.missing("mitsuba"):
         print(f"Mitsuba: {reason}", file=sys.stderr)
         return 1
     arguments.out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        figures = {"picture": compare_pictures(Path(folder), arguments.out)}
-        if not arguments.pictures_only:
+        figures: dict[str, Any] = {}
+        if arguments.only != "blocks":
+            figures["picture"] = compare_pictures(Path(folder), arguments.out)
+        if arguments.only != "picture":
             figures["blocks"] = compare_blocks(Path(folder))
     print(json.dumps(figures, indent=1))
     return 0

@@ -25,7 +25,7 @@ from accuray.film.png import encode_codes
 from benchmarks import peers
 from benchmarks.survey_scenes import PAIRS, TEXTURES, description
 
-SPP = 192
+SPP = 96
 HEAT_LIMIT = 0.2
 GAP = 4
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 TEXTURES = Path(__file__).parents[1] / "scenes" / "textures"
-SIZE = 192
+SIZE = 160
 Table = dict[str, Any]
 
 WHITE = {"type": "diffuse", "reflectance": [0.75, 0.75, 0.75]}

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -106,7 +107,7 @@ def spaced(parts: list[NDArray[np.uint8]], axis: int) -> Iterator[NDArray[np.uin
 
 MAKERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "aliasing": aliasing,
-    **{name: (lambda shot=shot: codes(shot)) for name, shot in SHOTS.items()},
+    **{name: partial(codes, shot) for name, shot in SHOTS.items()},
 }
 
 
