@@ -35,6 +35,7 @@ PICTURE_SIZE, PICTURE_SPP, PICTURE_IMAGES = 160, 1536, 4
 BLOCK_SIZE, BLOCK_SPP = 48, 49152
 """Samples that bring the darkest blocks, in the shadow of the tall block, below 0.3 % in both renderers."""
 BLOCK_IMAGES, MITSUBA_SPP = 64, 1024
+QUICK = 8
 
 Floats = NDArray[np.float64]
 
@@ -73,16 +74,19 @@ def by_mitsuba(folder: Path, spp: int, images: int, seed: int = 0) -> Floats:
     return np.stack([np.load(folder / f"mitsuba-{k}.npy") for k in range(images)]).astype(np.float64)
 
 
-def mitsuba_blocks(folder: Path, seed: int = 0) -> Blocks:
-    """XYZ of the blocks of small images, and standard errors from images of different seeds."""
-    images = by_mitsuba(folder, MITSUBA_SPP, BLOCK_IMAGES, seed)
+def mitsuba_blocks(folder: Path, seed: int = 0, fraction: int = 1) -> Blocks:
+    """XYZ of the blocks of small images, and standard errors from images of different seeds.
+
+    ``fraction`` divides the samples.
+    """
+    images = by_mitsuba(folder, MITSUBA_SPP // fraction, BLOCK_IMAGES, seed)
     blocks = block_means(images @ np.array(RGB_TO_XYZ).T)
     return Blocks(blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(len(blocks)))
 
 
-def accuray_blocks(folder: Path, seed: int = 0) -> Blocks:
+def accuray_blocks(folder: Path, seed: int = 0, fraction: int = 1) -> Blocks:
     """The same by AccuRay; errors from its replicates."""
-    film = accuray.render(accuray.load(folder / "scene.toml"), spp=BLOCK_SPP, seed=seed).film
+    film = accuray.render(accuray.load(folder / "scene.toml"), spp=BLOCK_SPP // fraction, seed=seed).film
     mean, error = pixel_estimates(film)
     return Blocks(block_means(mean), np.sqrt(block_means(error**2)) / BLOCK)
 
@@ -104,10 +108,10 @@ def compare_pictures(folder: Path, out: Path) -> dict[str, Any]:
     return {key: found.to_dict()[key] for key in keys} | {"heat_map_white": limit}
 
 
-def compare_blocks(folder: Path) -> dict[str, Any]:
+def compare_blocks(folder: Path, fraction: int) -> dict[str, Any]:
     """The largest relative difference of a block, the noise there, and the difference of the whole image."""
     write_scene(folder, BLOCK_SIZE)
-    theirs, ours = mitsuba_blocks(folder), accuray_blocks(folder)
+    theirs, ours = mitsuba_blocks(folder, 0, fraction), accuray_blocks(folder, 0, fraction)
     relative = ours.mean / theirs.mean - 1.0
     noise = np.hypot(ours.error, theirs.error) / theirs.mean
     y, x, channel = np.unravel_index(np.abs(relative).argmax(), relative.shape)
@@ -129,6 +133,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Compares the Cornell box with Mitsuba's.")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder of the pictures (default: out)")
     parser.add_argument("--only", choices=("picture", "blocks"), help="one of the two comparisons")
+    parser.add_argument("--quick", action="store_true", help=f"a {QUICK}th of the samples for the blocks")
     arguments = parser.parse_args()
     if reason := peers.missing("mitsuba"):
         print(f"Mitsuba: {reason}", file=sys.stderr)
@@ -139,7 +144,7 @@ def main() -> int:
         if arguments.only != "blocks":
             figures["picture"] = compare_pictures(Path(folder), arguments.out)
         if arguments.only != "picture":
-            figures["blocks"] = compare_blocks(Path(folder))
+            figures["blocks"] = compare_blocks(Path(folder), QUICK if arguments.quick else 1)
     print(json.dumps(figures, indent=1))
     return 0
 
