@@ -52,6 +52,7 @@ def image_facts(image: accuray.Image) -> Facts:
         ("image", size),
         ("samples", sample_ranges(image)),
         ("per pixel", number_range(int(counts.min()), int(counts.max()))),
+        ("layers", ", ".join(("colours", *film.layers))),
         ("replicates", f"{film.replicates}, samples of one number modulo {film.replicates} share one"),
         ("error", percentage(image.relative_error)),
         ("dropped", f"{film.dropped_total} samples that were not finite" if film.dropped_total else "no sample"),

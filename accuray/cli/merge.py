@@ -7,7 +7,7 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
-from .output import add_output_flag, probe, save_pair
+from .output import add_output_flag, probe, save
 from .parser import Parser, UsageError
 
 SUMMARY = "Add up images that hold different samples of one scene; the result has the bits of a single render."
@@ -41,7 +41,7 @@ def run(options: Namespace) -> int:
         place = "" if str(path) in str(error) else f"{path}: "
         raise UsageError(f"{place}{error}", COMMAND) from error
     merged.metadata["command"] = shlex.join(["accuray", *sys.argv[1:]])
-    png = save_pair(merged, options.output)
+    written = save(merged, options.output)
     if not options.quiet:
-        print(options.output, png, sep="\n")
+        print(*written, sep="\n")
     return 0

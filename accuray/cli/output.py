@@ -20,7 +20,7 @@ def add_output_flag(parser: Parser, *, required: bool) -> None:
         metavar="OUT.exr",
         type=Path,
         required=required,
-        help=f"the file to write; a .png is put beside it{default}",
+        help=f"the file to write; a .png is put beside it, and one for each further layer{default}",
     )
 
 
@@ -41,9 +41,12 @@ def probe(exr: Path, command: str) -> None:
             raise UsageError(str(error), command) from error
 
 
-def save_pair(image: accuray.Image, exr: Path) -> Path:
-    """Writes the EXR and then the PNG, and returns the latter's path."""
-    png = exr.with_suffix(".png")
-    image.save(exr)
-    image.save(png)
-    return png
+def save(image: accuray.Image, exr: Path) -> list[Path]:
+    """Writes the EXR, then the PNG and one for each further layer, `NAME.indirect.png`; returns their paths."""
+    written = [exr, exr.with_suffix(".png")]
+    for path in written:
+        image.save(path)
+    for layer in image.film.layers:
+        written.append(exr.with_suffix(f".{layer}.png"))
+        image.save(written[-1], layer=layer)
+    return written

@@ -102,6 +102,11 @@ def pixel_bounds(text: str) -> tuple[int, int, int, int]:
     return x0, x1, y0, y1
 
 
+def names(text: str) -> list[str]:
+    """An argument type: names separated by commas; an empty text is none."""
+    return [name.strip() for name in text.split(",")] if text else []
+
+
 def override(text: str) -> str:
     """An argument type: `key=value`, the key a dotted path into the scene."""
     key, equals, _ = text.partition("=")

@@ -13,8 +13,8 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from .interrupts import Interrupts
-from .output import add_output_flag, probe, save_pair
-from .parser import Parser, UsageError, fractions_of_image, override, pixel_bounds, sample_range, whole_number
+from .output import add_output_flag, probe, save
+from .parser import Parser, UsageError, fractions_of_image, names, override, pixel_bounds, sample_range, whole_number
 from .progress import choose_display
 from .threads import thread_count
 
@@ -51,6 +51,12 @@ def configure(parser: Parser) -> None:
     crop_help = "render only this part, in fractions of the image from its upper left corner"
     part.add_argument("--crop", metavar="x0,x1,y0,y1", type=fractions_of_image, help=crop_help)
     part.add_argument("--pixel-bounds", metavar="x0,x1,y0,y1", type=pixel_bounds, help="the same in pixels")
+    what.add_argument(
+        "--layers",
+        metavar="NAME,...",
+        type=names,
+        help="further layers of the image, of: indirect (light scattered more than once on its way to the camera)",
+    )
     what.add_argument(
         "-D",
         dest="overrides",
@@ -95,7 +101,7 @@ def run(options: Namespace) -> int:
             if not image.film.coverage:
                 raise KeyboardInterrupt  # it came before any pixel had a sample
             image.metadata["command"] = shlex.join(["accuray", *sys.argv[1:]])
-            png = save_pair(image, exr)
+            written = save(image, exr)
         except KeyboardInterrupt:
             warn(options, "interrupted before there was an image")
             return interrupts.status
@@ -105,7 +111,7 @@ def run(options: Namespace) -> int:
     if interrupts.status:
         warn(options, "interrupted; the image so far has been written")
     if not options.quiet:
-        print(exr, png, sep="\n")
+        print(*written, sep="\n")
     return interrupts.status
 
 
@@ -145,7 +151,8 @@ def render_arguments(options: Namespace) -> dict[str, Any]:
 def overrides(options: Namespace) -> list[str]:
     """The scene values that the command line sets, as `key=value`; flags with a name of their own win over -D."""
     named = (("film.width", options.width), ("film.height", options.height))
-    return [*options.overrides, *(f"{key}={value}" for key, value in named if value is not None)]
+    layers = [] if options.layers is None else [f"render.layers={json.dumps(options.layers)}"]
+    return [*options.overrides, *(f"{key}={value}" for key, value in named if value is not None), *layers]
 
 
 def crop_window(options: Namespace, width: int, height: int) -> tuple[int, int, int, int] | None:

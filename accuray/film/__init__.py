@@ -10,7 +10,7 @@ from .coverage import BLOCK, SampleRange
 from .errors import FilmOverflowError, ImageError, ImageWriteError, MergeError
 from .estimates import RegionEstimate, pixel_estimates, region_estimate, relative_error
 from .files import atomic_write, probe_writable
-from .film import DEFAULT_STEP, XYZA, Film
+from .film import DEFAULT_STEP, LAYERS, XYZA, Film, channels_with
 from .image import EXTENSIONS, Image
 from .layers import Layers
 from .merging import merge
@@ -20,6 +20,7 @@ __all__ = [
     "BLOCK",
     "DEFAULT_STEP",
     "EXTENSIONS",
+    "LAYERS",
     "XYZA",
     "Film",
     "FilmOverflowError",
@@ -31,6 +32,7 @@ __all__ = [
     "RegionEstimate",
     "SampleRange",
     "atomic_write",
+    "channels_with",
     "merge",
     "pixel_estimates",
     "probe_writable",

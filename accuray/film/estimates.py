@@ -56,14 +56,15 @@ class RegionEstimate:
 
 
 def pixel_estimates(
-    film: Film, matrix: Matrix | None = None, dtype: DTypeLike = np.float64
+    film: Film, matrix: Matrix | None = None, dtype: DTypeLike = np.float64, *, layer: str = ""
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Mean and standard error of each pixel, both (height, width, 3).
 
     Args:
-        film: its first three channels are X, Y, Z.
+        film: has channels X, Y, Z, and those of the layer.
         matrix: applied to XYZ before the error is taken (the error of an RGB is not the transform of XYZ errors).
         dtype: of the results; the arithmetic is double.
+        layer: one of `film.layers`; "" is the picture itself.
 
     Returns:
         mean (0 in a pixel without samples) and standard error (infinite where a replicate of the pixel is empty).
@@ -71,17 +72,19 @@ def pixel_estimates(
     mean = np.empty((*film.shape, 3), dtype=dtype)
     error = np.empty_like(mean)
     counts = film.counts()
+    start = film.layer_start(layer)
+    xyz = film.sums[:, :, :, start : start + 3]
     for rows in row_blocks(film.shape):
-        mean[rows], error[rows] = _estimate(film.sums[rows], counts[rows], film.step, matrix)
+        mean[rows], error[rows] = _estimate(xyz[rows], counts[rows], film.step, matrix)
     return mean, error
 
 
 def _estimate(
     sums: NDArray[np.int64], counts: NDArray[np.uint64], step: float, matrix: Matrix | None
 ) -> tuple[Floats, Floats]:
-    """`pixel_estimates` of one block: sums (h, w, R, C >= 3), counts (h, w, R)."""
+    """`pixel_estimates` of one block: sums of XYZ (h, w, R, 3), counts (h, w, R)."""
     samples = counts.sum(axis=2, dtype=np.uint64)
-    replicates = planes(sums[:, :, :, :3])
+    replicates = planes(sums)
     xyz = pooled_mean(replicates, samples, step)
     mean = xyz if matrix is None else transform(matrix, xyz)
     error = np.full_like(mean, math.inf)
@@ -124,7 +127,7 @@ def region_estimate(
         raise ImageError(f"region x {x0}:{x1}, y {y0}:{y1} is empty or leaves the image x {wx0}:{wx1}, y {wy0}:{wy1}")
     area = (slice(y0 - wy0, y1 - wy0), slice(x0 - wx0, x1 - wx0))
     counts = film.counts()[area]
-    means, errors = _estimate(film.sums[area], counts, film.step, matrix)
+    means, errors = _estimate(film.sums[area][:, :, :, :3], counts, film.step, matrix)
     pixels = (x1 - x0) * (y1 - y0)
     mean = means.sum(axis=(0, 1)) / pixels
     error = np.sqrt(np.square(errors).sum(axis=(0, 1))) / pixels

@@ -1,6 +1,7 @@
 """EXR files: a picture for every viewer, and the exact state of the film beside it.
 
-Part "rgba" holds float32 R, G, B, A and error.R/G/B and the uint32 sample count. Part "accuray.state" holds the int64
+Part "rgba" holds float32 R, G, B, A and error.R/G/B and the uint32 sample count, and for each further layer of the film
+(indirect) <layer>.R/G/B and error.<layer>.R/G/B. Part "accuray.state" holds the int64
 sums as pairs of uint32 channels, r<replicate>.<channel>.lo and .hi (two's complement), and r<replicate>.dropped. A
 hi or dropped channel that is zero everywhere is left out, and a reader takes it as zeros. The attribute accuray:ledger
 (JSON) says what the sums contain; accuray:stateCrc32 guards ledger and sums against damage that EXR would not notice.

@@ -8,7 +8,7 @@ independently scrambled, and their scatter gives the standard error.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -19,6 +19,8 @@ from .errors import ImageError
 
 DEFAULT_STEP = 2.0**-24
 XYZA = ("X", "Y", "Z", "A")
+LAYERS = ("indirect",)
+"""What a film may hold besides its colours, each as three channels X, Y, Z under its name."""
 
 
 @dataclass(eq=False)
@@ -102,6 +104,15 @@ class Film:
         """The number R of replicates."""
         return int(self.sums.shape[2])
 
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """The further layers that the film holds, of `LAYERS`."""
+        return tuple(layer for layer in LAYERS if f"{layer}.X" in self.channels)
+
+    def layer_start(self, layer: str) -> int:
+        """Index of the channel X of a further layer, or of the colours, whose name is ""."""
+        return self.channels.index(f"{layer}.X" if layer else "X")
+
     def cover(self, first: int, end: int, mask: Mask | None = None) -> None:
         """Records that samples first..end-1 of the masked pixels were added.
 
@@ -166,6 +177,18 @@ class Film:
             and np.array_equal(self.sums, other.sums)
             and np.array_equal(self.dropped, other.dropped)
         )
+
+
+def channels_with(layers: Iterable[str]) -> tuple[str, ...]:
+    """Channels of a film that holds these layers besides its colours.
+
+    Raises:
+        ImageError: a name that is none of `LAYERS`.
+    """
+    wanted = set(layers)
+    if unknown := sorted(wanted.difference(LAYERS)):
+        raise ImageError(f"layer {unknown[0]!r} is unknown: allowed are {', '.join(LAYERS)}")
+    return (*XYZA, *(f"{layer}.{axis}" for layer in LAYERS if layer in wanted for axis in "XYZ"))
 
 
 def planes(sums: NDArray[np.int64]) -> NDArray[np.float64]:

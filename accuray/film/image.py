@@ -125,33 +125,38 @@ class Image:
         path: str | os.PathLike[str],
         *,
         exposure: float | None = None,
+        layer: str = "rgb",
         compression: str = "zip",
         omit_time: bool = False,
     ) -> None:
         """Writes the image, atomically and durably; the extension decides the format.
 
-        .exr: linear float32 with errors, sample counts and the exact state. .png: 8-bit sRGB with exposure.
-        .npy: the array of `numpy.asarray(image)`.
+        .exr: linear float32 with errors, sample counts, all layers and the exact state. .png: 8-bit sRGB with exposure.
+        .npy: the float32 array (height, width, 3) of the layer.
 
         Args:
             path: its folder must exist.
             exposure: PNG only, in EV; default: the metadata's, else 0.
+            layer: PNG and NPY only, "rgb" or one of `film.layers`.
             compression: EXR only, "zip" or "none".
             omit_time: EXR only, leaves the render time out, so that repeated renders give equal files.
 
         Raises:
-            ImageError: unknown extension, or something that the format cannot hold.
+            ImageError: unknown extension or layer, or something that the format cannot hold.
             ImageWriteError: the file cannot be written.
         """
         extension = Path(path).suffix.lower()
+        shown = ("rgb", *self.film.layers)
+        if layer not in shown:
+            raise ImageError(f"layer {layer!r} is not in the image: allowed are {', '.join(shown)}", path)
         if extension == ".exr":
             picture = self._picture()
             write_exr(path, self.film, self.metadata, picture, compression=compression, omit_time=omit_time)
         elif extension == ".png":
-            atomic_write(path, self._png(exposure))
+            atomic_write(path, self._png(exposure, layer=layer))
         elif extension == ".npy":
             file = io.BytesIO()
-            np.save(file, self.layers["rgb"])
+            np.save(file, self.layers[layer])
             atomic_write(path, file.getbuffer())
         else:
             raise ImageError(f"unknown image extension {extension!r}: allowed are {', '.join(EXTENSIONS)}", path)
@@ -197,23 +202,27 @@ class Image:
     def pixels_equal(self, other: Image) -> bool:
         """Whether window and all pixel bits that an EXR's first part holds are the same."""
         mine, theirs = self._picture(), other._picture()
-        return self.film.window == other.film.window and all(
+        return (self.film.window, mine.keys()) == (other.film.window, theirs.keys()) and all(
             np.array_equal(mine[name].view(np.uint32), theirs[name].view(np.uint32)) for name in mine
         )
 
     def _picture(self) -> dict[str, NDArray[Any]]:
         """The channels of an EXR's first part; counts beyond 32 bits are held at the largest."""
-        rgb, error = self.layers["rgb"], self.layers["error"]
         samples = np.minimum(self.layers["samples"], np.iinfo(np.uint32).max).astype(np.uint32)
         channels: dict[str, NDArray[Any]] = {"A": self.layers["alpha"], "samples": samples}
-        for index, name in enumerate("RGB"):
-            channels[name] = np.ascontiguousarray(rgb[:, :, index])
-            channels[f"error.{name}"] = np.ascontiguousarray(error[:, :, index])
+        for prefix, layer in (("", "rgb"), ("error.", "error"), *((f"{name}.", name) for name in self._further_layers)):
+            for index, name in enumerate("RGB"):
+                channels[prefix + name] = np.ascontiguousarray(self.layers[layer][:, :, index])
         return channels
 
-    def _png(self, exposure: float | None = None, *, width: int | None = None) -> bytes:
+    @property
+    def _further_layers(self) -> tuple[str, ...]:
+        """Names of the layers besides the colours, and of their errors."""
+        return (*self.film.layers, *(f"error.{layer}" for layer in self.film.layers))
+
+    def _png(self, exposure: float | None = None, *, layer: str = "rgb", width: int | None = None) -> bytes:
         """The PNG file, at most `width` pixels wide; exposure in EV, by default the metadata's."""
-        pixels = self.layers["rgb"]
+        pixels = self.layers[layer]
         if transparent := bool(self.metadata.get("hide_environment")):
             pixels = np.concatenate([pixels, self.layers["alpha"][:, :, None]], axis=2)
         if width is not None:

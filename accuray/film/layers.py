@@ -18,7 +18,8 @@ class Layers(Mapping[str, NDArray[Any]]):
 
     rgb: float32, linear Rec.709, white balanced, premultiplied by alpha. alpha: float32. error: float32, standard
     error of rgb, infinite where unknown. xyz: float64, raw CIE XYZ. samples: uint64, samples per pixel. dropped:
-    uint64, non-finite samples left out per pixel.
+    uint64, non-finite samples left out per pixel. Where the film holds it, indirect: float32, as rgb, the light that
+    was scattered more than once on its way to the camera; error.indirect: its standard error.
     """
 
     _NAMES = ("rgb", "alpha", "error", "xyz", "samples", "dropped")
@@ -26,11 +27,12 @@ class Layers(Mapping[str, NDArray[Any]]):
     def __init__(self, film: Film, matrix: Matrix) -> None:
         self._film = film
         self._matrix = matrix
+        self._names = (*self._NAMES, *film.layers, *(f"error.{layer}" for layer in film.layers))
         self._computed: dict[str, NDArray[Any]] = {}
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        if name not in self._NAMES:
-            raise KeyError(f"{name!r}: allowed are {', '.join(self._NAMES)}")
+        if name not in self._names:
+            raise KeyError(f"{name!r}: allowed are {', '.join(self._names)}")
         if name not in self._computed:
             for key, layer in self._compute(name).items():
                 layer.flags.writeable = False
@@ -38,10 +40,10 @@ class Layers(Mapping[str, NDArray[Any]]):
         return self._computed[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._NAMES)
+        return iter(self._names)
 
     def __len__(self) -> int:
-        return len(self._NAMES)
+        return len(self._names)
 
     def _compute(self, name: str) -> dict[str, NDArray[Any]]:
         """The layer, with those that come with it at no cost."""
@@ -49,6 +51,10 @@ class Layers(Mapping[str, NDArray[Any]]):
         if name in ("rgb", "error"):
             mean, error = pixel_estimates(film, self._matrix, np.float32)
             return {"rgb": mean, "error": error}
+        layer = name.removeprefix("error.")
+        if layer in film.layers:
+            mean, error = pixel_estimates(film, self._matrix, np.float32, layer=layer)
+            return {layer: mean, f"error.{layer}": error}
         if name == "xyz":
             return {"xyz": film.mean(slice(0, 3))}
         if name == "alpha":

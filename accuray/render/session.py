@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from accuray import devices
-from accuray.film import Film, Image
+from accuray.film import Film, Image, channels_with
 from accuray.render.metadata import image_metadata
 from accuray.scene import Scene
 
@@ -45,6 +45,7 @@ def render(
     threads: int | None = None,
     samples: tuple[int, int] | None = None,
     crop: tuple[int, int, int, int] | None = None,
+    layers: Sequence[str] | None = None,
     progress: Callable[[Progress], None] | None = None,
     on_interrupt: str = "raise",
 ) -> Image:
@@ -59,6 +60,8 @@ def render(
         threads: default: all processors that this process may use.
         samples: (first, end), renders these sample numbers in place of 0 to spp.
         crop: (x0, y0, x1, y1) in pixels, half open.
+        layers: what the image holds besides its colours, of "indirect"; default: the scene's. The colours have the same
+            bits with and without.
         progress: is called now and then.
         on_interrupt: "raise" lets KeyboardInterrupt through at once; "return" gives the image so far, whose
             metadata then say ``interrupted``.
@@ -75,7 +78,8 @@ def render(
     if not 0 <= first < end < 2**32:
         raise ValueError(f"samples {first}:{end} are not a range within 0 to {2**32 - 1}")
     seed = _seed(scene, seed)
-    session = _Session(scene, (first, end), seed, crop, thread_count(threads), progress)
+    channels = channels_with(scene.render["layers"] if layers is None else layers)
+    session = _Session(scene, (first, end), seed, crop, channels, thread_count(threads), progress)
     interrupted = False
     try:
         session.run()
@@ -114,6 +118,7 @@ class _Session:
         samples: tuple[int, int],
         seed: int,
         crop: tuple[int, int, int, int] | None,
+        channels: tuple[str, ...],
         threads: int,
         progress: Callable[[Progress], None] | None,
     ) -> None:
@@ -127,6 +132,7 @@ class _Session:
             window=crop,
             replicates=scene.render["replicates"],
             step=scene.film["unit"],
+            channels=channels,
         )
         height, width = self.film.shape
         self.blocks = (-(-height // 16), -(-width // 16))

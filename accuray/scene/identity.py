@@ -3,7 +3,7 @@
 It covers every resolved value that changes a sample, so two scenes with the same identity have the same samples:
 units and defaults are applied, floats are written in hexadecimal, arrays and files count by content. Names of
 objects are part of it, because objects are lowered in the order of their names. Not part of it: samples per
-pixel, seed, exposure by EV or by ISO and shutter (except through ``film.unit``), white balance, file names,
+pixel, seed, layers, exposure by EV or by ISO and shutter (except through ``film.unit``), white balance, file names,
 spelling, order, comments.
 """
 
@@ -22,7 +22,7 @@ from accuray.scene.textures import TextureUse
 if TYPE_CHECKING:
     from accuray.scene.scene import Scene
 
-DISPLAY_ONLY = {"film": ("exposure", "iso", "shutter", "white_balance"), "render": ("spp", "seed")}
+DISPLAY_ONLY = {"film": ("exposure", "iso", "shutter", "white_balance"), "render": ("spp", "seed", "layers")}
 _FIELDS_OF_FORM = {
     "constant": ("value",),
     "rgb": ("rgb", "white"),

@@ -160,6 +160,7 @@ _KINDS: dict[str, Callable[[Param], Node]] = {
     "vec": _vec,
     "enum": lambda param: {"enum": list(param.choices)},
     "text": _text,
+    "words": lambda param: {"type": "array", "items": {"enum": list(param.choices)}, "uniqueItems": True},
     "file": lambda _: {"type": "string"},
     "transform": lambda _: {"$ref": "#/$defs/transform"},
     "array": _array,

@@ -1,8 +1,8 @@
 """One resolver per parameter kind: from what the scene says to the canonical value.
 
 Canonical values: bool, int, float (metres, radians, ...), tuple of floats (vec), str (enum, text, reference),
-list of str (references to shapes), float64 4x4 array (transform), float32 and uint32 arrays, Spectrum, Path;
-pictures (height, width, channels); TextureUse for what a texture gives.
+list of str (references to shapes), tuple of str (words), float64 4x4 array (transform), float32 and uint32 arrays,
+Spectrum, Path; pictures (height, width, channels); TextureUse for what a texture gives.
 """
 
 from __future__ import annotations
@@ -77,6 +77,15 @@ def _enum(param: Param, value: Any, where: Where, _scope: Scope) -> str:
     return choice(param, value, where)
 
 
+def _words(param: Param, value: Any, where: Where, _scope: Scope) -> tuple[str, ...]:
+    if not isinstance(value, (list, tuple)):
+        raise where.error("is not a list", value=value, allowed=f"a list of {' | '.join(param.choices)}")
+    words = tuple(choice(param, item, where.child(index)) for index, item in enumerate(value))
+    if len(set(words)) < len(words):
+        raise where.error("names one twice", value=value, allowed=f"each of {', '.join(param.choices)} once")
+    return words
+
+
 def _text(param: Param, value: Any, where: Where, _scope: Scope) -> str:
     text = text_value(value, where)
     names = vocabulary(param)
@@ -135,6 +144,7 @@ _RESOLVERS: dict[str, Callable[[Param, Any, Where, Scope], Any]] = {
     "vec": _vec,
     "enum": _enum,
     "text": _text,
+    "words": _words,
     "file": _file,
     "transform": _transform,
     "array": _array,

@@ -28,12 +28,13 @@ Request to_request(uint32_t seed, uint32_t replicates, uint32_t width, uint32_t 
 }
 
 FilmView to_film(const Sums& sums, const Dropped& dropped, uint32_t x0, uint32_t y0, uint32_t replicates) {
-  if (sums.shape(2) != replicates || sums.shape(3) != film_channels || dropped.shape(0) != sums.shape(0) ||
-      dropped.shape(1) != sums.shape(1) || dropped.shape(2) != replicates) {
-    throw std::invalid_argument("sums must be (H, W, replicates, 4) and dropped (H, W, replicates)");
+  const bool known = sums.shape(3) == film_channels || sums.shape(3) == film_channels + layer_channels;
+  if (sums.shape(2) != replicates || !known || dropped.shape(0) != sums.shape(0) || dropped.shape(1) != sums.shape(1) ||
+      dropped.shape(2) != replicates) {
+    throw std::invalid_argument("sums must be (H, W, replicates, 4 or 7) and dropped (H, W, replicates)");
   }
-  return {
-      sums.data(), dropped.data(), x0, y0, static_cast<uint32_t>(sums.shape(1)), static_cast<uint32_t>(sums.shape(0))};
+  const auto size = [&](size_t axis) { return static_cast<uint32_t>(sums.shape(axis)); };
+  return {sums.data(), dropped.data(), x0, y0, size(1), size(0), size(3)};
 }
 
 // A running pass; keeps everything that its threads read and write alive.
@@ -78,7 +79,8 @@ std::unique_ptr<Pass> render_pass(std::shared_ptr<LoadedScene> scene, Sums sums,
   auto task = [p, film, request, tiles, first, count](uint32_t i, const EmbreeAccel& accel,
                                                       const std::atomic<bool>& stop) {
     const SceneView& view = p->scene->accel.view();
-    const bool done = render_tile(view, accel, request, film, tiles[i], static_cast<uint32_t>(first), count, stop);
+    const auto render = film.channels == film_channels ? &render_tile : &render_tile_layers;
+    const bool done = render(view, accel, request, film, tiles[i], static_cast<uint32_t>(first), count, stop);
     p->finished[i] = done ? 1 : 0;
     return done;
   };
@@ -100,8 +102,8 @@ std::unique_ptr<Pass> ray_pass(std::shared_ptr<LoadedScene> scene, Sums sums, Dr
   const FilmView film = to_film(sums, dropped, 0, 0, replicates);
   const Request request = to_request(seed, replicates, 1, 1, wavelengths);
   const auto rays = static_cast<uint32_t>(origins.shape(0));
-  if (film.width != rays || film.height != 1)
-    throw std::invalid_argument("sums must have one row and a column for each ray");
+  if (film.width != rays || film.height != 1 || film.channels != film_channels)
+    throw std::invalid_argument("sums must have one row, a column for each ray and 4 channels");
   pass->scene = std::move(scene);
   pass->sums = std::move(sums);
   pass->dropped = std::move(dropped);

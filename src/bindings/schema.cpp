@@ -19,8 +19,8 @@ namespace {
 constexpr int kSamplingVersion = 2;
 
 const char* kind_name(Kind kind) {
-  constexpr const char* names[] = {"bool", "int",       "float", "vec",       "enum",    "text",
-                                   "file", "transform", "array", "reference", "spectrum"};
+  constexpr const char* names[] = {"bool", "int",       "float", "vec",       "enum",     "text",
+                                   "file", "transform", "array", "reference", "spectrum", "words"};
   return names[static_cast<uint32_t>(kind)];
 }
 

@@ -6,54 +6,14 @@
 #include <chrono>
 #include <utility>
 
+#include "engine/tile.h"
+
 namespace accuray {
 
 namespace {
 
 // Denormals count as zero in every thread that renders: Embree asks for it, and the bits must not depend on who calls.
 void set_float_mode() { _mm_setcsr(_mm_getcsr() | 0x8040u); }
-
-[[noreturn]] void throw_overflow() {
-  throw FilmOverflow("a pixel's sum no longer fits 64 bits: choose a larger film unit");
-}
-
-// Sums of some pixels: by pixel, replicate and channel as in FilmView.
-class PartialFilm {
- public:
-  PartialFilm(uint32_t pixels, uint32_t replicates)
-      : replicates_(replicates),
-        sums_(static_cast<size_t>(pixels) * replicates * film_channels),
-        dropped_(static_cast<size_t>(pixels) * replicates) {}
-
-  void add(uint32_t pixel, uint32_t replicate, const Quantized& sample) {
-    const size_t slot = static_cast<size_t>(pixel) * replicates_ + replicate;
-    if (!sample.finite) {
-      ++dropped_[slot];
-      return;
-    }
-    bool fits = true;
-    for (uint32_t c = 0; c < film_channels; ++c) fits &= add_checked(sums_[slot * film_channels + c], sample.value[c]);
-    if (!fits) throw_overflow();
-  }
-  // Adds one of these pixels to a pixel of the film.
-  void flush(uint32_t pixel, const FilmView& film, uint64_t target) const {
-    for (uint32_t r = 0; r < replicates_; ++r) {
-      const size_t slot = static_cast<size_t>(pixel) * replicates_ + r;
-      const uint64_t film_slot = target * replicates_ + r;
-      bool fits = true;
-      for (uint32_t c = 0; c < film_channels; ++c) {
-        fits &= add_checked(film.sums[film_slot * film_channels + c], sums_[slot * film_channels + c]);
-      }
-      if (!fits) throw_overflow();
-      film.dropped[film_slot] += dropped_[slot];
-    }
-  }
-
- private:
-  uint32_t replicates_;
-  std::vector<int64_t> sums_;
-  std::vector<uint32_t> dropped_;
-};
 
 }  // namespace
 
@@ -96,37 +56,17 @@ bool Pool::wait(double seconds) {
 
 bool render_tile(const SceneView& scene, const EmbreeAccel& accel, const Request& request, const FilmView& film,
                  uint32_t tile, uint32_t first, uint32_t count, const std::atomic<bool>& stop) {
-  const uint32_t tiles_across = (film.width + tile_size - 1) / tile_size;
-  const uint32_t left = (tile % tiles_across) * tile_size;
-  const uint32_t top = (tile / tiles_across) * tile_size;
-  const uint32_t right = std::min(left + tile_size, film.width);
-  const uint32_t bottom = std::min(top + tile_size, film.height);
   const float inverse_step = 1.0f / scene.root->film_step;
-
-  PartialFilm sums(tile_size * tile_size, request.replicates);
-  for (uint32_t y = top; y < bottom; ++y) {
-    for (uint32_t x = left; x < right; ++x) {
-      const uint32_t pixel = (y - top) * tile_size + (x - left);
-      for (uint32_t i = first; i < first + count; ++i) {
-        if (stop) return false;
-        sums.add(pixel, i % request.replicates,
-                 sample_pixel(scene, accel, request, film.x0 + x, film.y0 + y, i, inverse_step));
-      }
-    }
-  }
-  for (uint32_t y = top; y < bottom; ++y) {
-    for (uint32_t x = left; x < right; ++x) {
-      sums.flush((y - top) * tile_size + (x - left), film, static_cast<uint64_t>(y) * film.width + x);
-    }
-  }
-  return true;
+  return add_tile(film, request.replicates, tile, first, count, stop, [&](uint32_t x, uint32_t y, uint32_t i) {
+    return sample_pixel(scene, accel, request, film.x0 + x, film.y0 + y, i, inverse_step);
+  });
 }
 
 bool trace_rays(const SceneView& scene, const EmbreeAccel& accel, const Request& request, const float* origins,
                 const float* directions, const FilmView& film, uint32_t begin, uint32_t end, uint32_t first,
                 uint32_t count, const std::atomic<bool>& stop) {
   const float inverse_step = 1.0f / scene.root->film_step;
-  PartialFilm sums(end - begin, request.replicates);
+  PartialFilm sums(end - begin, request.replicates, film.channels);
   for (uint32_t ray = begin; ray < end; ++ray) {
     const Vec3 origin = load_vec3(origins, ray);
     const Vec3 direction = load_vec3(directions, ray);

@@ -49,12 +49,13 @@ class Pool {
 };
 
 // Where the sums of a picture lie. Pixel (x, y) of the window, replicate r, channel c: sums[((y * width + x) * R + r) *
-// 4 + c].
+// channels + c].
 struct FilmView {
   int64_t* sums;
   uint32_t* dropped;       // per pixel and replicate
   uint32_t x0, y0;         // the window's corner in the whole picture
   uint32_t width, height;  // of the window
+  uint32_t channels;       // film_channels, and layer_channels more with indirect light
 };
 
 struct FilmOverflow : std::runtime_error {
@@ -68,7 +69,11 @@ constexpr uint32_t tile_size = 16;
 bool render_tile(const SceneView& scene, const EmbreeAccel& accel, const Request& request, const FilmView& film,
                  uint32_t tile, uint32_t first, uint32_t count, const std::atomic<bool>& stop);
 
-// The same for rays [begin, end) of a list; sums are laid out as for a picture of height 1.
+// The same with indirect light.
+bool render_tile_layers(const SceneView& scene, const EmbreeAccel& accel, const Request& request, const FilmView& film,
+                        uint32_t tile, uint32_t first, uint32_t count, const std::atomic<bool>& stop);
+
+// The same as render_tile for rays [begin, end) of a list; sums are laid out as for a picture of height 1.
 bool trace_rays(const SceneView& scene, const EmbreeAccel& accel, const Request& request, const float* origins,
                 const float* directions, const FilmView& film, uint32_t begin, uint32_t end, uint32_t first,
                 uint32_t count, const std::atomic<bool>& stop);

@@ -13,7 +13,20 @@
 
 namespace accuray {
 
-enum class Kind : uint32_t { boolean, integer, real, vec, choice, text, file, transform, array, reference, spectrum };
+enum class Kind : uint32_t {
+  boolean,
+  integer,
+  real,
+  vec,
+  choice,
+  text,
+  file,
+  transform,
+  array,
+  reference,
+  spectrum,
+  words
+};
 
 constexpr uint32_t no_member = 0xffffffffu;
 constexpr double unbounded = 1e308;
@@ -26,7 +39,7 @@ struct Param {
   double low = -unbounded;  // smallest and largest value allowed
   double high = unbounded;
   const char* unit = "";
-  const char* choices = "";  // words separated by '|'
+  const char* choices = "";  // words separated by '|': one of them (choice) or any of them (words)
   const char* role = "";     // reflectance, emission, index; material, shape; shape of an array
   const char* group = "";    // "set:alternative": exactly one alternative of a set is given; "set?:...": at most one
   bool required = false;

@@ -35,6 +35,7 @@ class FakeImage:
             window=(0, 0, 200, 100),
             replicates=4,
             step=2.0**-24,
+            layers=(),
         )
         counts = SimpleNamespace(min=lambda: samples[1] - samples[0], max=lambda: samples[1] - samples[0])
         self.layers = {"samples": counts}

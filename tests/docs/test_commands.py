@@ -12,6 +12,7 @@ replaced, as this table says; a command that no row matches fails the test.
 | other `accuray ...` | as it is |
 | `python -m benchmarks...` | the same with `--help` in place of other arguments, in the repository |
 | `python examples/...` | the small AccuRay of `small.py` |
+| `python tools/...` | the same with `--help` in place of other arguments, in the repository |
 | `python -m pytest ...` | the same with `--collect-only` |
 | `ruff ...`, `clang-format ...` | the tool with `--version`, if it is installed |
 | `... > FILE` | without the redirection |
@@ -71,6 +72,8 @@ def substitute(command: str) -> tuple[list[str], Path | None] | None:
         return [sys.executable, "-m", words[2], "--help"], REPOSITORY
     if program in ("python", "python3") and words[1].startswith("examples/"):
         return [sys.executable, str(SMALL), words[1]], None
+    if program in ("python", "python3") and words[1].startswith("tools/"):
+        return [sys.executable, words[1], "--help"], REPOSITORY
     if program in TOOLS:
         return ([str(BIN / program), "--version"], None) if (BIN / program).exists() else None
     raise AssertionError(f"no rule says how to test: {command}")

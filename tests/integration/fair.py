@@ -64,6 +64,11 @@ def brightened(scene: accuray.Scene, light: str, factor: float) -> accuray.Scene
     return replace(scene, lights=scene.lights | {light: table | {"radiance": radiance}})
 
 
+def glowing_under(scene: accuray.Scene, lamp: str, factor: float, material: str, radiance: float) -> accuray.Scene:
+    """The lamp `enlarged`, and the material `glowing`."""
+    return glowing(enlarged(scene, lamp, factor), material, radiance)
+
+
 def dimmed(scene: accuray.Scene, names: tuple[str, ...], factor: float) -> accuray.Scene:
     """The materials called so emit `factor` of their light."""
     changed = {name: dict(scene.materials[name]) for name in names}
@@ -100,12 +105,21 @@ class Fair:
 
 UNKNOWN = Fair("as it is")
 FAIR = {
+    "aliasing": Fair("as it is: its light comes from everywhere"),
+    "area-and-point-light": Fair(
+        "the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3)
+    ),
     "closed-box": Fair("as it is: it glows everywhere"),
     "cornell-box": Fair("the lamp 4 times as wide and long, 1/16 as bright", partial(enlarged, lamp="lamp", factor=4)),
+    "colour-bleeding": Fair(
+        "the lamp 3 times as wide and long, 1/9 as bright, and what is white glows",
+        partial(glowing_under, lamp="lamp", factor=3, material="white", radiance=2.0),
+    ),
     "depth-of-field": Fair(
         "the lamps in the background a tenth as bright", partial(dimmed, names=("warm", "cool"), factor=0.1)
     ),
     "furnace": Fair("as it is: its light comes from everywhere"),
+    "glass-and-texture": Fair("the wall glows", partial(glowing, material="wall", radiance=1.0)),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "openpbr": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "rough-metals": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),

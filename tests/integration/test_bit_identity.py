@@ -22,7 +22,7 @@ pytest.importorskip("accuray._core", reason="the compiled module is not built")
 import accuray
 from accuray import devices
 from accuray.cli import main
-from accuray.film import Film, Image
+from accuray.film import Film, Image, channels_with
 
 SPP = 64
 WIDTH, HEIGHT = 40, 24
@@ -63,10 +63,17 @@ def assert_same_bits(mine: Path, theirs: Path) -> None:
     assert [name for name in a if not np.array_equal(a[name], b[name])] == []
 
 
+def empty_film(name: str) -> Film:
+    """A film of no samples, with the layers that the scene asks for."""
+    render = scene(name).render
+    channels = channels_with(render["layers"])
+    return Film.empty(WIDTH, HEIGHT, replicates=render["replicates"], step=scene(name).film["unit"], channels=channels)
+
+
 def rendered_by(passes: list[tuple[list[int], int, int]], name: str, threads: int = 2) -> Film:
     """The film after the passes (tiles, first sample, count), one after the other, on the bare engine."""
     loaded = devices.load(scene(name))
-    film = Film.empty(WIDTH, HEIGHT, replicates=scene(name).render["replicates"], step=scene(name).film["unit"])
+    film = empty_film(name)
     for tiles, first, count in passes:
         core = loaded.render_pass(film, tiles, first, count, seed=SEED, threads=threads)
         while not core.wait(1.0):
@@ -104,7 +111,7 @@ def test_grouping_of_the_work(name: str, work: str) -> None:
 def test_passes_side_by_side(name: str) -> None:
     """Two passes over one loaded scene at once, each with threads of its own, into one film."""
     loaded = devices.load(scene(name))
-    film = Film.empty(WIDTH, HEIGHT, replicates=scene(name).render["replicates"], step=scene(name).film["unit"])
+    film = empty_film(name)
     running = [loaded.render_pass(film, EVERY[k::2], 0, SPP, seed=SEED, threads=2) for k in (0, 1)]
     while not all(core.wait(0.01) for core in running):
         pass

@@ -82,7 +82,13 @@ struct RenderCommon {
               .doc = "Independently scrambled parts of a pixel's samples; the error bars come from their spread.",
               .preset = "4",
               .low = 1,
-              .high = 16});
+              .high = 16},
+        Param{.name = "layers",
+              .kind = Kind::words,
+              .doc = "What the image holds besides its colours. indirect: the light that was scattered more than once "
+                     "on its way to the camera.",
+              .preset = "[]",
+              .choices = "indirect"});
   }
 };
 

@@ -8,7 +8,8 @@
 
 namespace accuray {
 
-constexpr uint32_t film_channels = 4;
+constexpr uint32_t film_channels = 4;   // X, Y, Z, alpha
+constexpr uint32_t layer_channels = 3;  // X, Y, Z of a further layer
 
 struct Quantized {
   int64_t value[film_channels];

@@ -18,6 +18,8 @@ struct DirectLighting {
                             .choices = "mis|light|bsdf",
                             .member = ACCURAY_OFFSET_OF(DirectLighting, strategy)});
   }
+  DirectLighting direct_part() const { return *this; }
+
   template <Accel A>
   void trace(const SceneView& scene, const A& accel, Path& path) const {
     PathTracing{1, 0, 2, strategy}.trace(scene, accel, path);

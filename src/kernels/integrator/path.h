@@ -52,6 +52,9 @@ struct PathTracing {
             .member = ACCURAY_OFFSET_OF(PathTracing, strategy)});
   }
 
+  // The same paths as far as their first scattering event.
+  PathTracing direct_part() const { return {first_event(max_depth), depth_budget, roulette_depth, strategy}; }
+
   bool may_scatter(const Path& path) const { return max_depth < 0 || path.depth < static_cast<uint32_t>(max_depth); }
   bool can_afford(const Path& path, uint32_t lobe) const {
     return depth_budget == 0 || path.spent + depth_cost(lobe) <= static_cast<uint32_t>(depth_budget);

@@ -24,6 +24,8 @@ struct Reference {
                             .member = ACCURAY_OFFSET_OF(Reference, max_depth)});
   }
 
+  Reference direct_part() const { return {first_event(max_depth)}; }
+
   template <Accel A>
   void trace(const SceneView& scene, const A& accel, Path& path) const {
     while (path.alive) {

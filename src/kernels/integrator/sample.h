@@ -76,6 +76,15 @@ inline void trace(const SceneView& scene, const A& accel, Path& path) {
   });
 }
 
+// Emission and direct light of the path that `trace` follows from the same start.
+template <Accel A>
+inline void trace_direct(const SceneView& scene, const A& accel, Path& path) {
+  dispatch(Integrators{}, scene.root->integrator.tag, [&](auto type) {
+    scene.as<typename decltype(type)::type>(scene.root->integrator).direct_part().trace(scene, accel, path);
+    return true;
+  });
+}
+
 // Sample `index` of pixel (x, y), rounded to the film's step.
 template <Accel A>
 inline Quantized sample_pixel(const SceneView& scene, const A& accel, const Request& request, uint32_t x, uint32_t y,
@@ -89,7 +98,31 @@ inline Quantized sample_pixel(const SceneView& scene, const A& accel, const Requ
   return quantize(channels, inverse_step, dither_key(key, index));
 }
 
-// The same along a given ray; `number` takes the pixel's place.
+// The same sample with its indirect light beside it: what was scattered more than once on its way to the camera.
+struct LayeredSample {
+  Quantized picture;   // what sample_pixel gives
+  Quantized indirect;  // X, Y, Z, 0
+};
+
+// The path is traced again as far as its first event. Both add the same numbers in the same order up to there, so that
+// the difference is what the whole path gathered later: never negative, and zero where it ended.
+template <Accel A>
+inline LayeredSample sample_pixel_layers(const SceneView& scene, const A& accel, const Request& request, uint32_t x,
+                                         uint32_t y, uint32_t index, float inverse_step) {
+  const uint32_t key = pixel_key(request, x, y, index);
+  const Sampler sampler = sampler_for(request, key, index);
+  const f32x4 u = sampler.draw(camera_set);
+  Path path = generate(scene, request, x, y, sampler, sample_wavelengths(scene, request.observer, u[2]), u);
+  Path direct = path;
+  trace(scene, accel, path);
+  trace_direct(scene, accel, direct);
+  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
+  const f32x4 indirect = respond(scene, request.observer, path.wl, path.radiance - direct.radiance, 0.0f, u[2]);
+  const uint32_t dither = dither_key(key, index);
+  return {quantize(channels, inverse_step, dither), quantize(indirect, inverse_step, hash(dither, 0x696e6469u))};
+}
+
+// What sample_pixel gives, along a given ray; `number` takes the pixel's place.
 template <Accel A>
 inline Quantized sample_ray(const SceneView& scene, const A& accel, const Request& request, Vec3 origin, Vec3 direction,
                             uint32_t number, uint32_t index, float inverse_step) {

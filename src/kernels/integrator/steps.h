@@ -152,6 +152,9 @@ inline void sample_light(const SceneView& scene, const A& accel, Strategy strate
   path.radiance = fma(path.throughput * f, arriving, path.radiance);
 }
 
+// A largest number of scattering events, -1 for any, lowered to one: emission and direct light.
+inline int32_t first_event(int32_t max_depth) { return max_depth < 0 || max_depth > 1 ? 1 : max_depth; }
+
 // What a lobe costs of the weighted depth budget (AccuRay report 2014). Both sides of a glossy surface cost the same,
 // so that light found by its direction and light found by choosing a lamp end at the same depth.
 inline uint32_t depth_cost(uint32_t lobe) {
