@@ -27,7 +27,7 @@ BALL = 1.5
 
 
 def minimum_deviation(index: float, apex: float = APEX) -> float:
-    """Least deviation by a prism (Fraunhofer 1817), radians; the ray crosses it symmetrically."""
+    """Least deviation by a prism, radians; the ray crosses it symmetrically."""
     return 2.0 * math.asin(index * math.sin(0.5 * apex)) - apex
 
 
