@@ -24,6 +24,7 @@ PIXELS = 16
 LAMP, FILM = 0.25, 1.6
 AHEAD = (0.0, 0.0, -1.0)
 TO_CAMERA = (0.0, 0.0, 1.0)
+FILTERS = ("box", "tent", "gaussian", "blackman_harris")
 #: Batches tell the error, so all samples of a pixel may form one net.
 ONE: Table = {"replicates": 1}
 
@@ -151,6 +152,19 @@ def _in_focus() -> Case:
     )
 
 
+def _filters() -> list[Case]:
+    """An edge 3.3 pixels from the left, under each pixel filter: none adds or loses light."""
+    camera = {"type": "orthographic", "height": 8.0, "position": [0, 0, 0], "look_at": list(AHEAD)}
+    rows = []
+    for name in FILTERS:
+        film = {"width": 8, "height": 8, "filter": {"type": name}}
+        scene = assemble([rectangle((-0.7, -20, -2), (40, 0, 0), (0, 40, 0), lamp())], film=film, camera=camera)
+        sentence = f"An edge at 3.3 pixels of 8 under the {name} filter: light of the rest"
+        source = "the filter's weights add up to 1"
+        rows.append(Case(f"C7.filter-{name}", sentence, source, (4.7,), ImageProbe(scene, _mean_of(8.0))))
+    return rows
+
+
 def _wall() -> Case:
     camera = {"type": "perspective", "fov": 100, "aperture_radius": 0.05}
     scene = assemble([], [environment()], film=_film(8, 8), camera=camera)
@@ -250,4 +264,4 @@ def _projections() -> list[Case]:
 
 def cases() -> list[Case]:
     """All cases of this chapter."""
-    return [*_blurs(), *_fluxes(), _in_focus(), _wall(), *_projections()]
+    return [*_blurs(), *_fluxes(), _in_focus(), *_filters(), _wall(), *_projections()]

@@ -58,6 +58,10 @@ def _furnaces() -> list[Case]:
         _furnace("hollow-glass", "A glass sphere with a hollow in it", bubble),
         _furnace("water-in-glass", "A glass sphere with water in it", watery),
         _furnace("mirror-sphere", "A perfect mirror ball", [sphere(ORIGIN, 1.0, mirror())]),
+        _furnace(
+            "pane-sphere", "A ball of a thin pane", [sphere(ORIGIN, 1.0, {"type": "thin_dielectric", "ior": 1.5})]
+        ),
+        _furnace("soap-bubble", "A soap bubble, 400 nm thick", [sphere(ORIGIN, 1.0, glass(1.0, film_thickness=400))]),
         _furnace("dispersive-sphere", "A sphere of SF11 glass", [sphere(ORIGIN, 1.0, glass("SF11"))]),
     ]
     rows += [

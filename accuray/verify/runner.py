@@ -9,14 +9,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from accuray.verify import cameras, direct, enclosures, energy, fresnel, spectra
+from accuray.verify import cameras, direct, enclosures, energy, fresnel, refraction, spectra
 from accuray.verify.case import POWER, Case, FloatArray, Row
 from accuray.verify.report import Report
 
 #: (rows done, cases done, cases in all) after every case
 ProgressCallback = Callable[[Sequence[Row], int, int], None]
 
-CHAPTERS = {"C1": direct, "C2": enclosures, "C3": energy, "C4": fresnel, "C7": cameras, "C8": spectra}
+CHAPTERS = {
+    "C1": direct,
+    "C2": enclosures,
+    "C3": energy,
+    "C4": fresnel,
+    "C5": refraction,
+    "C7": cameras,
+    "C8": spectra,
+}
 
 
 @dataclass(frozen=True)

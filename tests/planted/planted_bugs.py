@@ -52,6 +52,13 @@ BUGS = (
         "C1.disk-off-axis/light",
     ),
     bug(
+        "film-crossed-once",
+        "bsdf/thin_film.h",
+        "const double turns = 2.0 * ",
+        "const double turns = ",
+        "C4.film-oxide-0",
+    ),
+    bug(
         "bsdf-pdf-doubled",
         "bsdf/diffuse.h",
         "? cosine_hemisphere_pdf(abs(wi.z)) : 0.0f",

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from accuray.verify import all_cases, cameras, colorimetry, form_factors, optics
+from accuray.verify import all_cases, cameras, colorimetry, form_factors, optics, refraction
 
 EXACT = 1e-9
 
@@ -185,6 +185,47 @@ def test_sellmeier(glass: str, key: str) -> None:
     for line, wavelength in (("C", 656.2725), ("d", 587.5618), ("F", 486.1327), ("g", 435.8343)):
         index = optics.sellmeier(wavelength, entry.A0, entry.B, entry.C)
         assert index == pytest.approx(figures()[key][f"n_{line}_{wavelength}"], abs=1e-6)
+
+
+@pytest.mark.parametrize("glass", ["N-BK7", "SF11"])
+def test_prisms(glass: str) -> None:
+    from accuray import data
+
+    entry, reference = data.glasses()[glass], figures()[f"prism60_{glass}"]
+    incidence = math.radians(reference["incidence_min_dev_d_deg"])
+    for line, wavelength in refraction.LINES.items():
+        index = optics.sellmeier(wavelength, entry.A0, entry.B, entry.C)
+        least = refraction.minimum_deviation(index)
+        assert math.degrees(least) == pytest.approx(reference[f"Dmin_deg_{line}_{wavelength}"], abs=1e-5)
+        assert refraction.deviation(0.5 * (least + refraction.APEX), index) == pytest.approx(least, abs=1e-12)
+        if line in "CF":
+            fixed = math.degrees(refraction.deviation(incidence, index))
+            assert fixed == pytest.approx(reference[f"dev_at_that_incidence_{line}"], abs=2e-5)
+
+
+def test_glass_ball() -> None:
+    reference = figures()["glass_sphere_n1.5_collimated"]
+    names = ("reflected_outside", "transmitted_p1", "after_one_internal_reflection")
+    for order, name in enumerate(names):
+        close(refraction.ball_order(order), reference[name], 1e-7)
+    for name, value in reference.items():
+        if name.startswith("flux_z"):
+            z, radius = name.removeprefix("flux_z").split("_r")
+            assert refraction.ball_flux(float(z), float(radius)) == pytest.approx(
+                value, rel=4e-4
+            )  # of sums over a coarser beam
+
+
+def test_films() -> None:
+    """No film, half a wave of one and one of the base's own index change nothing; Airy's formula; total reflection."""
+    for theta in (0.0, 0.7, 1.4):
+        bare = optics.fresnel(theta, complex(0.2, 3.5))
+        close(optics.film_reflectance(theta, 1.7, complex(0.2, 3.5), 0.0, 550.0), bare)
+        half = 550.0 / (2.0 * math.sqrt(1.7**2 - math.sin(theta) ** 2))
+        close(optics.film_reflectance(theta, 1.7, complex(0.2, 3.5), half, 550.0), bare)
+        close(optics.film_reflectance(theta, 1.5, 1.5, 123.0, 550.0), optics.fresnel(theta, 1.5))
+    assert optics.film_reflectance(0.0, math.sqrt(1.5), 1.5, 550.0 / 4.0 / math.sqrt(1.5), 550.0) < 1e-15
+    close(optics.film_reflectance(math.radians(60), 1.38, 1.0, 120.0, 550.0, before=1.5), 1.0)
 
 
 def test_planck() -> None:
