@@ -94,6 +94,7 @@ class Fair:
 UNKNOWN = Fair("as it is")
 FAIR = {
     "closed-box": Fair("as it is: it glows everywhere"),
+    "coated": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "cornell-box": Fair("the lamp 4 times as wide and long, 1/16 as bright", partial(enlarged, lamp="lamp", factor=4)),
     "depth-of-field": Fair(
         "the lamps in the background a tenth as bright", partial(dimmed, names=("warm", "cool"), factor=0.1)

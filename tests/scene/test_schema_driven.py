@@ -108,11 +108,10 @@ def scene_with(section: str, type_: Type, param: Param, value: Any) -> dict[str,
         return {section: table}
     if section == "shapes":
         table["material"] = "m"
-    return (
-        {"materials": {"m": {"type": "diffuse"}}, section: {"x": table}}
-        if section == "shapes"
-        else {section: {"x": table}}
-    )
+    table |= {p.name: "m" for p in type_.params if p.required and p.role == "material"}
+    scene: dict[str, dict[str, Any]] = {"materials": {"m": {"type": "diffuse"}}} if "m" in table.values() else {}
+    scene.setdefault(section, {})["x"] = table
+    return scene
 
 
 @pytest.mark.parametrize(("section", "type_", "param"), numeric_fields())
