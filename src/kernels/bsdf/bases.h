@@ -48,21 +48,21 @@ union AnyValues<TypeList<T, Ts...>> {
   }
 };
 
+// Whether light goes through to the back of the base.
+inline bool base_transmits(uint32_t tag) {
+  return dispatch(Bases{}, tag, [](auto type) { return requires { decltype(type)::type::transmits; }; });
+}
+
 struct BaseAt {
   uint32_t tag;
   AnyValues<Bases> values;
 
-  // Under a layer of this index, which does not lie before the back of what lets no light through.
-  ACCURAY_NOINLINE static BaseAt of(Tagged base, const ShadingPoint& p, Spectrum layer) {
-    BaseAt at;
-    at.tag = base.tag;
-    const ShadingPoint under = {p.scene, p.wl,    p.where, p.behind && !at.transmits() ? p.exterior : layer,
-                                p.seed,  p.behind};
+  void set(Tagged base, const ShadingPoint& p) {
+    tag = base.tag;
     dispatch(Bases{}, base.tag, [&](auto type) {
       using Bsdf = typename decltype(type)::type;
-      at.values.template set<Bsdf>(p.scene.as<Bsdf>(base).at(under));
+      values.template set<Bsdf>(p.scene.as<Bsdf>(base).at(p));
     });
-    return at;
   }
   // Calls fn with the values as what they are.
   template <class Fn>
@@ -76,10 +76,7 @@ struct BaseAt {
   uint32_t lobe() const {
     return visit([](const auto& base) { return base.lobe; });
   }
-  // Whether light goes through to its back.
-  bool transmits() const {
-    return dispatch(Bases{}, tag, [](auto type) { return requires { decltype(type)::type::transmits; }; });
-  }
+  bool transmits() const { return base_transmits(tag); }
 };
 
 }  // namespace accuray

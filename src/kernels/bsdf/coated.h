@@ -106,12 +106,14 @@ struct Coated {
   // Takes parts of a path by value, like whatever is kept out of the paths of other scenes (texture/list.h).
   ACCURAY_NOINLINE CoatedAt make(const SceneView& scene, Wavelengths wl, TexturePoint where, Spectrum exterior,
                                  uint32_t seed, bool behind) const {
-    const ShadingPoint p = {scene, wl, where, exterior, seed, behind};
+    ShadingPoint p = {scene, wl, where, exterior, seed, behind};
     const Spectrum index = lanes(p.real(ior));
     const Spectrum share = p.spectrum(transmission_color);
     CoatedAt at;
     at.layer.top = interface.at(p, index / exterior);
-    at.layer.base = BaseAt::of(base, p, index);
+    // The layer lies before the base, but not before the back of an opaque one.
+    if (!behind || base_transmits(base.tag)) p.exterior = index;
+    at.layer.base.set(base, p);
     at.layer.share = share;
     at.layer.clear = min(min(share[0], share[1]), min(share[2], share[3])) >= 1.0f;
     at.layer.hero_only = wl.hero_only;
