@@ -386,6 +386,8 @@ def test_delta_lobes_go_both_ways_alike(name: str) -> None:
                 amplified = 2e-6 + 1e-6 * max(scale, scale_back) / max(abs(wo[2]), 1e-3)
                 assert np.abs(returned - wo).max() < amplified, where
                 step = 2.0 * max(largest * scale, largest_back * scale_back) / LOBE_STEPS
+                if claims(name, "stochastic"):  # the first choice goes by even steps, the others are drawn
+                    step += 5.0 * np.sqrt(max(energy[0] * largest, energy_back[0] * largest_back) / LOBE_STEPS)
                 assert abs(energy[0] * scale - energy_back[0] * scale_back) <= step + 2.0 * amplified, where
                 assert abs(scale * scale_back - 1.0) < 1e-5, where
                 sines = np.hypot(*wo[:2]), np.hypot(*wi[:2])
