@@ -2,13 +2,14 @@
 #include "kernels/accel/exhaustive.h"
 #include "kernels/integrator/sample.h"
 
-extern "C" __global__ void sample_pixels(const unsigned char* const* sections, accuray::Request request, unsigned index,
+// The view and the request are the same for all threads and stay in constant memory.
+extern "C" __global__ void sample_pixels(const __grid_constant__ accuray::SceneView scene,
+                                         const __grid_constant__ accuray::Request request, unsigned index,
                                          accuray::Quantized* out) {
   using namespace accuray;
   const uint32_t x = blockIdx.x * blockDim.x + threadIdx.x;
   const uint32_t y = blockIdx.y;
   if (x >= request.width) return;
-  const SceneView scene = SceneView::of(sections);
   const Exhaustive accel{&scene};
   const float inverse_step = 1.0f / scene.root->film_step;
   out[y * request.width + x] = sample_pixel(scene, accel, request, x, y, index, inverse_step);

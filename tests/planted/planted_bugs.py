@@ -119,7 +119,7 @@ BUGS = (
     bug(
         "no-shadows",
         "integrator/steps.h",
-        "return accel.transmittance({from, to - from, one_minus_epsilon, time});",
+        "return accel.transmittance(ray);",
         "return 1.0f;",
         "C1.penumbra/light",
     ),

@@ -211,7 +211,7 @@ COATS = [
     scene(
         "coats-on-each-other",
         '[materials.m]\ntype = "coated"\nbase = "n"\n[materials.n]\ntype = "coated"\nbase = "m"\n',
-        "scene.toml:4: materials.m.base",
+        "scene.toml:7: materials.n.base",
         "part of itself: m -> n -> m",
     ),
     scene(

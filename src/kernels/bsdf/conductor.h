@@ -46,8 +46,8 @@ struct ConductorAt {
     float pdf;
   };
 
-  // Value and density of the facets' lobe and the one of what they lose.
-  Lobes lobes(Vec3 wo, Vec3 wi) const {
+  // Value and density of the facets' lobe and the one of what they lose; not inlined, like that of interfaces.
+  ACCURAY_NOINLINE Lobes lobes(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f || (wo.z > 0.0f) != (wi.z > 0.0f)) return {lanes(0.0f), 0.0f};
     const Vec3 half = wo + wi;
     const float cos_o = abs(wo.z);

@@ -39,7 +39,8 @@ struct RoughInterface {
     Spectrum pdf;  // if each lane were the hero
   };
 
-  Lobes lobes(Vec3 wo, Vec3 wi) const {
+  // Not inlined, so that compilers for GPUs have one copy of it to work on.
+  ACCURAY_NOINLINE Lobes lobes(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f) return {lanes(0.0f), lanes(0.0f)};
     const bool above = wo.z > 0.0f;
     if (!above) {

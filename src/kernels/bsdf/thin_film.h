@@ -5,11 +5,10 @@
 // 7.6). The path's lanes are single wavelengths, so colours need no further approximation.
 //
 // Conventions
-//   - Indices and cosines count from the medium before the surface, whose index is 1 here; `wavelength` is the one
-//   there.
+//   - Indices and cosines count from the medium before the surface, whose index is 1 here; wavelengths are those there.
 //   - w = n cos(theta) is the part of the wave's vector along the normal; w^2 of the film is real and below 0 where the
-//     film reflects totally and light leaks through. c = cos(2 pi d w / wavelength), s = sin(2 pi d w / wavelength) /
-//     w, up to a common sign.
+//     film reflects totally and light leaks through. c = cos(pi turns w), s = sin(pi turns w) / w, up to a common
+//     sign.
 //   - Phases are computed in double: a film is up to some hundred wavelengths thick.
 #pragma once
 
@@ -22,15 +21,14 @@ namespace accuray {
 // The film at a hit.
 struct FilmAt {
   Spectrum index = lanes(1.0f);
-  Spectrum wavelength = lanes(550.0f);  // nm
-  float thickness = 0.0f;               // nm; 0: there is none
+  Spectrum turns = lanes(0.0f);  // twice the thickness over the wavelength; 0: there is none
 
-  bool exists() const { return thickness > 0.0f; }
+  bool exists() const { return turns[0] > 0.0f; }
   static FilmAt of(const ShadingPoint& p, const RealRef& thickness, SpectrumRef ior) {
     const float metres = p.real(thickness);
     if (!(metres > 0.0f)) [[likely]]
       return {};
-    return {p.spectrum(ior) / p.exterior, p.wl.lambda / p.exterior, min(metres * 1e9f, thickest)};
+    return {p.spectrum(ior) / p.exterior, 2.0f * min(metres * 1e9f, thickest) / p.wl.lambda * p.exterior};
   }
   static constexpr float thickest = 1e5f;  // what film_params() allows, for textures
 };
@@ -49,7 +47,7 @@ inline FilmPhase film_phase(const FilmAt& film, int k, double sin2) {
   const double n = static_cast<double>(film.index[k]);
   const double w2 = n * n - sin2;
   const double w = sqrt(abs(w2));
-  const double turns = 2.0 * static_cast<double>(film.thickness) / static_cast<double>(film.wavelength[k]);
+  const double turns = static_cast<double>(film.turns[k]);
   const float narrow = static_cast<float>(w2);
   if (w * turns < 1e-6) return {narrow, 1.0f, pi * static_cast<float>(turns)};
   if (w2 > 0.0) {

@@ -7,14 +7,12 @@
 
 namespace accuray {
 
-// What a stochastic BSDF draws from at this vertex.
-constexpr uint32_t bsdf_stream = 0x62736466u;
-
 inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& material, const Path& path,
                                   const Surface& surface, uint32_t exterior) {
   const Spectrum before =
       material.interior == none ? lanes(1.0f) : exterior_ior(scene, material.interior, exterior, path.wl);
-  const uint32_t seed = hash(path.sampler.key, path.sampler.index, path.depth, bsdf_stream);
+  // What stochastic BSDFs draw from: a combination only, which they hash first.
+  const uint32_t seed = path.sampler.key + path.sampler.index * 0x9e3779b9u + path.depth * 0x85ebca6bu;
   const bool behind = leaves(path, surface);
   if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before, seed, behind};
   ShadingPoint point{scene, path.wl, texture_point(scene, path.hit, surface), before, seed, behind};

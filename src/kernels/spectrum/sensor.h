@@ -55,11 +55,12 @@ inline f32x4 respond(const SceneView& scene, const Observer& observer, const Wav
     return lanes(value[(4 - hero) & 3], value[(5 - hero) & 3], value[(6 - hero) & 3], value[(7 - hero) & 3]);
   }
   f32x4 channels = lanes(0.0f);
+  const Wavelengths::Cells at = wl.cells();
   for (int k = 0; k < 4; ++k) {
-    const float* node = scene.response + size_t{4} * wl.cell[k];
+    const float* node = scene.response + size_t{4} * at.index[k];
     const f32x4 a = lanes(node[0], node[1], node[2], node[3]);
     const f32x4 b = lanes(node[4], node[5], node[6], node[7]);
-    channels = fma(fma(lanes(wl.fraction[k]), b - a, a), lanes(value[k]), channels);
+    channels = fma(fma(lanes(at.fraction[k]), b - a, a), lanes(value[k]), channels);
   }
   channels[3] = alpha;
   return channels;

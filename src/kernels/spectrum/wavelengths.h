@@ -21,14 +21,18 @@ constexpr uint32_t lambda_nodes = 471;
 struct Wavelengths {
   f32x4 lambda;    // nm
   f32x4 weight;    // 1 / (4 pdf), nm
-  u32x4 cell;      // index of the 1 nm cell
-  f32x4 fraction;  // position within the cell
   bool hero_only;  // lanes 1 to 3 carry nothing any more
 
-  static Wavelengths at(f32x4 lambda, f32x4 weight) {
+  static Wavelengths at(f32x4 lambda, f32x4 weight) { return {lambda, weight, false}; }
+
+  struct Cells {
+    u32x4 index;     // of the 1 nm cell
+    f32x4 fraction;  // position within the cell
+  };
+  Cells cells() const {
     const f32x4 t = min(max(lambda - lambda_min, lanes(0.0f)), lanes(static_cast<float>(lambda_cells) - 0x1p-14f));
-    const u32x4 cell = to_index(t);
-    return {lambda, weight, cell, t - to_float(cell), false};
+    const u32x4 index = to_index(t);
+    return {index, t - to_float(index)};
   }
 };
 
@@ -42,13 +46,14 @@ inline Spectrum keep_hero(Spectrum throughput) { return lanes(4.0f * throughput[
 
 // A table with values at every nanometre, linear in between.
 inline Spectrum lookup(const float* table, const Wavelengths& wl) {
-  const float* t0 = table + wl.cell[0];
-  const float* t1 = table + wl.cell[1];
-  const float* t2 = table + wl.cell[2];
-  const float* t3 = table + wl.cell[3];
+  const Wavelengths::Cells at = wl.cells();
+  const float* t0 = table + at.index[0];
+  const float* t1 = table + at.index[1];
+  const float* t2 = table + at.index[2];
+  const float* t3 = table + at.index[3];
   const f32x4 a = lanes(t0[0], t1[0], t2[0], t3[0]);
   const f32x4 b = lanes(t0[1], t1[1], t2[1], t3[1]);
-  return fma(wl.fraction, b - a, a);
+  return fma(at.fraction, b - a, a);
 }
 
 }  // namespace accuray
