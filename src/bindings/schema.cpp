@@ -106,7 +106,7 @@ nb::dict tables() {
   families["shape"] = family(Shapes{}, params_of<ShapeCommon>());
   families["camera"] = family(NamedCameras{}, params_of<CameraCommon>());
   families["filter"] = family(Filters{}, nb::list());
-  families["integrator"] = family(Integrators{}, nb::list());
+  families["integrator"] = family(NamedIntegrators{}, nb::list());
   families["material"] = family(TypeList<>{}, params_of<MaterialCommon>());
   families["film"] = family(TypeList<>{}, params_of<FilmCommon>());
   families["render"] = family(TypeList<>{}, params_of<RenderCommon>());

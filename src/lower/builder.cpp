@@ -337,7 +337,11 @@ void SceneBuilder::set_filter(std::string_view type, const Values& values) {
 }
 
 void SceneBuilder::set_integrator(std::string_view type, const Values& values) {
-  root_.integrator = lower_type(Integrators{}, type, values, pool_);
+  if (type == DirectLighting::name) {
+    root_.integrator = {tag_of<PathTracing>(Integrators{}), pool_.add(struct_of<DirectLighting>(values).as_path())};
+  } else {
+    root_.integrator = lower_type(Integrators{}, type, values, pool_);
+  }
 }
 
 void SceneBuilder::set_film(double step, bool hide_environment) {

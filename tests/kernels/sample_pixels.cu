@@ -1,4 +1,5 @@
-// Every type of every list, reached from one GPU kernel: built by the tests to see that the kernels are device code.
+// Path tracing with every type of every list, from one GPU kernel: built by the tests to see that the kernels are
+// device code.
 #include "kernels/accel/exhaustive.h"
 #include "kernels/integrator/sample.h"
 
@@ -12,5 +13,5 @@ extern "C" __global__ void sample_pixels(const __grid_constant__ accuray::SceneV
   if (x >= request.width) return;
   const Exhaustive accel{&scene};
   const float inverse_step = 1.0f / scene.root->film_step;
-  out[y * request.width + x] = sample_pixel(scene, accel, request, x, y, index, inverse_step);
+  out[y * request.width + x] = sample_pixel<TypeList<PathTracing>>(scene, accel, request, x, y, index, inverse_step);
 }

@@ -54,8 +54,8 @@ inline bool base_transmits(uint32_t tag) {
 }
 
 struct BaseAt {
-  uint32_t tag;
   AnyValues<Bases> values;
+  uint32_t tag;
 
   void set(Tagged base, const ShadingPoint& p) {
     tag = base.tag;

@@ -18,11 +18,13 @@ namespace accuray {
 
 struct CoatLayer {
   DielectricAt top;  // from what is before the surface into the layer
-  BaseAt base;       // what is before it is the layer
   Spectrum share;    // of the light that is left after crossing the layer straight
+  // What is before it is the layer. On GPUs the layer lies in a thread's own memory, of which there is little.
+  [[no_unique_address]] BaseAt base;
   bool clear;
   bool hero_only;
   uint32_t seed;
+  uint32_t lobe;
 
   bool is_delta(bool at_top) const { return at_top ? top.is_delta() : base.is_delta(); }
 

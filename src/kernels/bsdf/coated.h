@@ -10,26 +10,23 @@
 
 namespace accuray {
 
-struct CoatedAt {
-  CoatLayer layer;
-  uint32_t lobe;
-
-  bool is_delta() const { return layer.top.is_delta() && layer.base.is_delta(); }
+struct CoatedAt : CoatLayer {
+  bool is_delta() const { return top.is_delta() && base.is_delta(); }
 
   Spectrum eval(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f) return lanes(0.0f);
-    if (is_bare(wo)) return coat_lobes(layer, false, wo, wi).value;
-    if ((wo.z > 0.0f) != (wi.z > 0.0f) && !layer.base.transmits()) return lanes(0.0f);
-    return coat_eval(layer, wo, wi);
+    if (is_bare(wo)) return coat_lobes(*this, false, wo, wi).value;
+    if ((wo.z > 0.0f) != (wi.z > 0.0f) && !base.transmits()) return lanes(0.0f);
+    return coat_eval(*this, wo, wi);
   }
   float pdf(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f || is_delta()) return 0.0f;
-    return is_bare(wo) ? coat_lobes(layer, false, wo, wi).pdf[0] : coat_pdf(layer, wo, wi);
+    return is_bare(wo) ? coat_lobes(*this, false, wo, wi).pdf[0] : coat_pdf(*this, wo, wi);
   }
   BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
     if (wo.z == 0.0f) return no_sample();
-    if (is_bare(wo)) return coat_event(layer, false, wo, {u.x, u.y, u_lobe});
-    BsdfSample s = coat_sample(layer, wo, u_lobe, u);
+    if (is_bare(wo)) return coat_event(*this, false, wo, {u.x, u.y, u_lobe});
+    BsdfSample s = coat_sample(*this, wo, u_lobe, u);
     if (is_black(s.weight)) return s;
     const bool crosses = (s.wi.z > 0.0f) != (wo.z > 0.0f);
     if (crosses) {
@@ -39,14 +36,14 @@ struct CoatedAt {
     }
     if ((s.lobe & lobe_specular) == 0) {
       s.lobe |= lobe;
-      s.pdf = coat_pdf(layer, wo, s.wi);
+      s.pdf = coat_pdf(*this, wo, s.wi);
     }
     return s;
   }
 
  private:
   // The back of an opaque base has no layer before it.
-  bool is_bare(Vec3 wo) const { return wo.z < 0.0f && !layer.base.transmits(); }
+  bool is_bare(Vec3 wo) const { return wo.z < 0.0f && !base.transmits(); }
 };
 
 struct Coated {
@@ -100,25 +97,19 @@ struct Coated {
   }
   bool oriented() const { return interface.oriented(); }
 
-  CoatedAt at(const ShadingPoint& p) const { return make(p.scene, p.wl, p.where, p.exterior, p.seed, p.behind); }
-
- private:
-  // Takes parts of a path by value, like whatever is kept out of the paths of other scenes (texture/list.h).
-  ACCURAY_NOINLINE CoatedAt make(const SceneView& scene, Wavelengths wl, TexturePoint where, Spectrum exterior,
-                                 uint32_t seed, bool behind) const {
-    ShadingPoint p = {scene, wl, where, exterior, seed, behind};
+  CoatedAt at(ShadingPoint p) const {
     const Spectrum index = lanes(p.real(ior));
     const Spectrum share = p.spectrum(transmission_color);
     CoatedAt at;
-    at.layer.top = interface.at(p, index / exterior);
+    at.top = interface.at(p, index / p.exterior);
     // The layer lies before the base, but not before the back of an opaque one.
-    if (!behind || base_transmits(base.tag)) p.exterior = index;
-    at.layer.base.set(base, p);
-    at.layer.share = share;
-    at.layer.clear = min(min(share[0], share[1]), min(share[2], share[3])) >= 1.0f;
-    at.layer.hero_only = wl.hero_only;
-    at.layer.seed = seed;
-    at.lobe = (at.layer.base.lobe() & lobe_diffuse) != 0 ? lobe_diffuse : lobe_glossy;
+    if (!p.behind || base_transmits(base.tag)) p.exterior = index;
+    at.base.set(base, p);
+    at.share = share;
+    at.clear = min(min(share[0], share[1]), min(share[2], share[3])) >= 1.0f;
+    at.hero_only = p.wl.hero_only;
+    at.seed = p.seed;
+    at.lobe = (at.base.lobe() & lobe_diffuse) != 0 ? lobe_diffuse : lobe_glossy;
     return at;
   }
 };

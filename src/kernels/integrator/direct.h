@@ -1,4 +1,4 @@
-// Emission and direct light only: path tracing that stops at the first vertex.
+// Emission and direct light only: path tracing that stops at the first vertex, which it is lowered to.
 #pragma once
 
 #include "kernels/integrator/path.h"
@@ -18,12 +18,7 @@ struct DirectLighting {
                             .choices = "mis|light|bsdf",
                             .member = ACCURAY_OFFSET_OF(DirectLighting, strategy)});
   }
-  DirectLighting direct_part() const { return *this; }
-
-  template <Accel A>
-  void trace(const SceneView& scene, const A& accel, Path& path) const {
-    PathTracing{1, 0, 2, strategy}.trace(scene, accel, path);
-  }
+  PathTracing as_path() const { return {1, 0, 2, strategy}; }
 };
 
 }  // namespace accuray

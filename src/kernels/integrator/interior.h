@@ -15,7 +15,7 @@ constexpr uint32_t most_interiors = 8;
 // Indices into SceneView::interiors in the order of entering. Deeper nesting forgets the outermost.
 struct Interiors {
   uint32_t count = 0;
-  uint32_t entered[most_interiors] = {};
+  uint16_t entered[most_interiors] = {};
 
   void remove_at(uint32_t position) {
     for (uint32_t i = position; i + 1 < count; ++i) entered[i] = entered[i + 1];
@@ -23,7 +23,7 @@ struct Interiors {
   }
   void enter(uint32_t interior) {
     if (count == most_interiors) remove_at(0);
-    entered[count++] = interior;
+    entered[count++] = static_cast<uint16_t>(interior);
   }
   // A body may be bounded by several materials, so one that was never entered ends what was entered last.
   void leave(uint32_t interior) {

@@ -1,4 +1,4 @@
-// All integrators.
+// All integrators: those that kernels run, and those that scenes name.
 #pragma once
 
 #include "kernels/integrator/direct.h"
@@ -7,6 +7,7 @@
 
 namespace accuray {
 
-using Integrators = TypeList<PathTracing, DirectLighting, Reference>;
+using Integrators = TypeList<PathTracing, Reference>;
+using NamedIntegrators = TypeList<PathTracing, DirectLighting, Reference>;
 
 }  // namespace accuray

@@ -68,9 +68,10 @@ inline Path generate(const SceneView& scene, const Request& request, uint32_t x,
   return path;
 }
 
-template <Accel A>
+// `Among`: the integrators that may be asked for. A kernel for GPUs has one, which is what its threads' memory bears.
+template <class Among, Accel A>
 inline void trace(const SceneView& scene, const A& accel, Path& path) {
-  dispatch(Integrators{}, scene.root->integrator.tag, [&](auto type) {
+  dispatch(Among{}, scene.root->integrator.tag, [&](auto type) {
     scene.as<typename decltype(type)::type>(scene.root->integrator).trace(scene, accel, path);
     return true;
   });
@@ -86,14 +87,14 @@ inline void trace_direct(const SceneView& scene, const A& accel, Path& path) {
 }
 
 // Sample `index` of pixel (x, y), rounded to the film's step.
-template <Accel A>
+template <class Among = Integrators, Accel A>
 inline Quantized sample_pixel(const SceneView& scene, const A& accel, const Request& request, uint32_t x, uint32_t y,
                               uint32_t index, float inverse_step) {
   const uint32_t key = pixel_key(request, x, y, index);
   const Sampler sampler = sampler_for(request, key, index);
   const f32x4 u = sampler.draw(camera_set);
   Path path = generate(scene, request, x, y, sampler, sample_wavelengths(scene, request.observer, u[2]), u);
-  trace(scene, accel, path);
+  trace<Among>(scene, accel, path);
   const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
   return quantize(channels, inverse_step, dither_key(key, index));
 }
@@ -114,7 +115,7 @@ inline LayeredSample sample_pixel_layers(const SceneView& scene, const A& accel,
   const f32x4 u = sampler.draw(camera_set);
   Path path = generate(scene, request, x, y, sampler, sample_wavelengths(scene, request.observer, u[2]), u);
   Path direct = path;
-  trace(scene, accel, path);
+  trace<Integrators>(scene, accel, path);
   trace_direct(scene, accel, direct);
   const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
   const f32x4 indirect = respond(scene, request.observer, path.wl, path.radiance - direct.radiance, 0.0f, u[2]);
@@ -131,7 +132,7 @@ inline Quantized sample_ray(const SceneView& scene, const A& accel, const Reques
   const f32x4 u = sampler.draw(camera_set);
   Path path =
       start_path({origin, direction, infinity, u[3]}, sample_wavelengths(scene, request.observer, u[2]), sampler);
-  trace(scene, accel, path);
+  trace<Integrators>(scene, accel, path);
   const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
   return quantize(channels, inverse_step, dither_key(key, index));
 }
