@@ -251,9 +251,8 @@ def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
     families = schema.current()
 
     def lengths(family: str, table: Table) -> Table:
-        params = families.family(family).types[table["type"]].params
-        if family == "bsdf":
-            params = (*params, *families.family("material").common)
+        types = families.material_types() if family == "material" else families.family(family).types
+        params = types[table["type"]].params
         given = [p.name for p in params if p.unit == "m" and isinstance(table.get(p.name), (float, tuple, np.ndarray))]
         found = {name: _times(table[name], factor) for name in given}
         if table.get("transform") is not None:
@@ -261,7 +260,7 @@ def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
         return table | found
 
     shapes = {name: lengths("shape", table) for name, table in scene.shapes.items()}
-    materials = {name: lengths("bsdf", table) for name, table in scene.materials.items()}
+    materials = {name: lengths("material", table) for name, table in scene.materials.items()}
     textures = {name: lengths("texture", table) for name, table in scene.textures.items()}
     lights = {name: lengths("light", table) for name, table in scene.lights.items()}
     for table in lights.values():
