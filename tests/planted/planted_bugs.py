@@ -54,8 +54,8 @@ BUGS = (
     bug(
         "film-crossed-once",
         "bsdf/thin_film.h",
-        "const double turns = 2.0 * ",
-        "const double turns = ",
+        "2.0f * min(metres * 1e9f, thickest)",
+        "min(metres * 1e9f, thickest)",
         "C4.film-oxide-0",
     ),
     bug(
