@@ -105,8 +105,9 @@ class PlyReader {
       size_t i = vertex_->find(name);
       return i < slots_.size() && !vertex_->properties[i].is_list && vertex_->properties[i].type == type;
     };
-    if (!fits(names[0]) || !fits(names[1]) || !fits(names[2]) || !white_of(type)) return;
-    color_white_ = *white_of(type);
+    const std::optional<float> white = white_of(type);
+    if (!fits(names[0]) || !fits(names[1]) || !fits(names[2]) || !white) return;
+    color_white_ = *white;
     mesh_.srgb_colors = is_integer(type);
     claim({names[0], names[1], names[2]}, kColor);
     if (fits(names[3])) claim({names[3]}, kAlpha);
