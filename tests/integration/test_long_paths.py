@@ -122,7 +122,7 @@ def test_interrupt_within_a_pixel(interrupt_after: Callable[[float], dict[str, f
     def interrupt_in_the_largest_pass(progress: accuray.Progress) -> None:
         nonlocal sent
         if progress.done >= 60 and not sent:
-            sent = interrupt_after(0.0)
+            sent = interrupt_after(0.05)  # time enough to return from here
 
     with pytest.raises(KeyboardInterrupt):
         accuray.render(mirror_room(size=1), spp=ENDLESS, progress=interrupt_in_the_largest_pass)
