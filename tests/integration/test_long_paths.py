@@ -117,16 +117,15 @@ def test_interrupt_ends_a_render_at_once(name: str, interrupt_after: Callable[[f
 
 def test_interrupt_within_a_pixel(interrupt_after: Callable[[float], dict[str, float]]) -> None:
     """One pixel whose samples are long paths, when passes have grown to 64 samples: a sample is the longest wait."""
-    sent: dict[str, float] = {}
+    sent: list[dict[str, float]] = []
 
     def interrupt_in_the_largest_pass(progress: accuray.Progress) -> None:
-        nonlocal sent
         if progress.done >= 60 and not sent:
-            sent = interrupt_after(0.05)  # time enough to return from here
+            sent.append(interrupt_after(0.05))  # time enough to return from here
 
     with pytest.raises(KeyboardInterrupt):
         accuray.render(mirror_room(size=1), spp=ENDLESS, progress=interrupt_in_the_largest_pass)
-    assert time.process_time() - sent["at"] < AT_ONCE
+    assert time.process_time() - sent[0]["at"] < AT_ONCE
 
 
 def test_interrupt_ends_a_probe_at_once(interrupt_after: Callable[[float], dict[str, float]]) -> None:
