@@ -54,16 +54,22 @@ class MaterialLowering:
         if key not in self._numbers:
             if material["type"] in MODELS:
                 header = {param.name: material[param.name] for param in self._schema.family("material").common}
-                material = {**MODELS[material["type"]](material), **header}
+                material = self._whole(MODELS[material["type"]](material)) | header
             self._numbers[key] = self._guard(f"materials.{name}", partial(self._add, material))
         return self._numbers[key]
 
+    def _whole(self, table: Values) -> Values:
+        """A table of a model with the defaults of what it leaves out."""
+        return default_values(self._schema.material_types[table["type"]], self._schema) | table
+
     def _add(self, table: Values) -> int:
-        """A material of which only what differs from the defaults need be given; parts are names or tables."""
-        material = {**default_values(self._schema.material_types()[table["type"]], self._schema), **table}
-        maps = {key: material[key] for key in MAPS}
-        for param, part in parts_of(material, self._schema):
-            material[param] = self._named(part, maps) if isinstance(part, str) else self._add({**part, **maps})
+        """A material with all its parameters; parts are names, or tables that leave out what is at its default."""
+        maps = {key: table[key] for key in MAPS}
+        parts = {
+            param: self._named(part, maps) if isinstance(part, str) else self._add(self._whole(part) | maps)
+            for param, part in parts_of(table, self._schema)
+        }
+        material = table | parts
         header = self._values_of(self._schema.family("material").common, material)
         emission = header.pop("emission", None)
         bsdf = self._schema.family("bsdf").types.get(material["type"])

@@ -25,7 +25,7 @@ Objects = dict[str, dict[str, Any]]
 
 def parts_of(material: dict[str, Any], schema: Schema) -> Iterator[tuple[str, str]]:
     """The materials that one refers to, by the parameter that does."""
-    for param in schema.material_types()[material["type"]].params:
+    for param in schema.material_types[material["type"]].params:
         if param.kind == "reference" and param.role == "material" and material[param.name] is not None:
             yield param.name, material[param.name]
 

@@ -51,7 +51,7 @@ def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
         "camera": _object(scene.camera, schema.family("camera").types),
         "integrator": _object(scene.integrator, schema.family("integrator").types),
         "textures": {name: _object(item, textures) for name, item in scene.textures.items()},
-        "materials": {name: _object(item, schema.material_types()) for name, item in scene.materials.items()},
+        "materials": {name: _object(item, schema.material_types) for name, item in scene.materials.items()},
         "lights": {name: _object(item, lights) for name, item in scene.lights.items()},
         "shapes": {name: _object(item, shapes) for name, item in scene.shapes.items()},
     }

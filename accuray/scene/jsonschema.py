@@ -39,7 +39,7 @@ def json_schema() -> Node:
         "integrator": _one_of(schema.family("integrator").types),
         "spectra": _named({"$ref": "#/$defs/spectrum"}),
         "textures": _named(_one_of(schema.family("texture").types)),
-        "materials": _named(_one_of(schema.material_types())),
+        "materials": _named(_one_of(schema.material_types)),
         "lights": _named(_one_of(schema.family("light").types)),
         "shapes": _named(_one_of(schema.family("shape").types)),
     }

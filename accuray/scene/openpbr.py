@@ -68,17 +68,18 @@ def tree(m: Table) -> Table:
 
 
 def _metal(m: Table) -> Table:
-    metal = {"type": "conductor", "edge_tint": m["specular_color"], **_facets(m, "specular")}
-    if isinstance(m["base_weight"], TextureUse):
-        return _mixed(BLACK, {**metal, "reflectance": m["base_color"]}, m["base_weight"])
-    return {**metal, "reflectance": _times(m["base_color"], m["base_weight"])}
+    return _coloured(m, {"type": "conductor", "edge_tint": m["specular_color"], **_facets(m, "specular")})
 
 
 def _matte(m: Table) -> Table:
-    matte = {"type": "diffuse", "roughness": m["base_diffuse_roughness"]}
+    return _coloured(m, {"type": "diffuse", "roughness": m["base_diffuse_roughness"]})
+
+
+def _coloured(m: Table, base: Table) -> Table:
+    """A base of the base's colour times its weight, which as a texture has no product with another."""
     if isinstance(m["base_weight"], TextureUse):
-        return _mixed(BLACK, {**matte, "reflectance": m["base_color"]}, m["base_weight"])
-    return {**matte, "reflectance": _times(m["base_color"], m["base_weight"])}
+        return _mixed(BLACK, {**base, "reflectance": m["base_color"]}, m["base_weight"])
+    return {**base, "reflectance": _times(m["base_color"], m["base_weight"])}
 
 
 def _plastic(m: Table) -> Table:

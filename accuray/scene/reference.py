@@ -95,7 +95,7 @@ def reference_markdown() -> str:
         parts.append(_family(title, section, note, family.types.values()))
     header_names = "Besides its own parameters every material has the last ones of its table."
     parts.append(_family("Textures", "textures.NAME", _TEXTURES, schema.family("texture").types.values()))
-    parts.append(_family("Materials", "materials.NAME", header_names, schema.material_types().values()))
+    parts.append(_family("Materials", "materials.NAME", header_names, schema.material_types.values()))
     parts.append(_family("Lights", "lights.NAME", "", schema.family("light").types.values()))
     parts.append(_family("Shapes", "shapes.NAME", "", schema.family("shape").types.values()))
     return "\n".join(parts)

@@ -89,7 +89,7 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     scope = Scope(document, schema, Confinement.around(document.top.folder, roots))
     film, pixel_filter = _film(scope)
     textures = _named("textures", schema.family("texture").types, scope)
-    materials = _named("materials", schema.material_types(), scope)
+    materials = _named("materials", schema.material_types, scope)
     lights = _named("lights", schema.family("light").types, scope)
     shapes = _named("shapes", schema.family("shape").types, scope)
     check_shapes(shapes, schema, top.child("shapes"))

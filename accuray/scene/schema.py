@@ -8,6 +8,7 @@ that is added in C++ needs no line of Python.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any
 
 
@@ -94,6 +95,7 @@ class Schema:
         """A family by name; an unknown one is a bug of ours."""
         return self.families[name]
 
+    @cached_property
     def material_types(self) -> dict[str, Type]:
         """BSDFs, compositions and models with the header that all materials share."""
         header = self.family("material").common

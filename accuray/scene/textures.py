@@ -114,11 +114,13 @@ def check_films(materials: Objects, where: Where) -> None:
 def check_vertices(textures: Objects, materials: Objects, shapes: Objects, schema: Schema, where: Where) -> None:
     """Shapes have at their vertices what the textures of their materials read there. Raises SceneError."""
     types = schema.family("texture").types
+    uses = {
+        name: [(part, *use) for part in all_parts(materials, name, schema) for use in uses_of(materials[part])]
+        for name in materials
+    }
     for name, shape in shapes.items():
         for member in shape.get("of") or (name,):
-            material = shape["material"] or shapes[member]["material"]
-            uses = ((part, *use) for part in all_parts(materials, material, schema) for use in uses_of(materials[part]))
-            for part, key, use in uses:
+            for part, key, use in uses[shape["material"] or shapes[member]["material"]]:
                 lack = _lack(types[textures[use.texture]["type"]], shapes[member])
                 if lack is not None:
                     via = f' (shown by "{name}")' if member != name else ""

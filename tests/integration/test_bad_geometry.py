@@ -251,7 +251,7 @@ def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
     families = schema.current()
 
     def lengths(family: str, table: Table) -> Table:
-        types = families.material_types() if family == "material" else families.family(family).types
+        types = families.material_types if family == "material" else families.family(family).types
         params = types[table["type"]].params
         given = [p.name for p in params if p.unit == "m" and isinstance(table.get(p.name), (float, tuple, np.ndarray))]
         found = {name: _times(table[name], factor) for name in given}

@@ -60,7 +60,7 @@ def test_every_parameter_of_every_type_is_there() -> None:
     for shape in scene.shapes.values():
         assert list(shape) == ["type", *(param.name for param in schema.family("shape").types[shape["type"]].params)]
     for material in scene.materials.values():
-        assert list(material) == ["type", *(param.name for param in schema.material_types()[material["type"]].params)]
+        assert list(material) == ["type", *(param.name for param in schema.material_types[material["type"]].params)]
 
 
 def test_objects_are_in_the_order_of_their_names() -> None:

@@ -75,7 +75,7 @@ def all_types() -> Iterator[tuple[str, Type]]:
     found = schema.parse(schema.load_tables())
     for family, section in SECTION_OF.items():
         yield from ((section, type_) for type_ in found.family(family).types.values())
-    yield from (("materials", type_) for type_ in found.material_types().values())
+    yield from (("materials", type_) for type_ in found.material_types.values())
     yield "film", found.family("film").header
     yield "render", found.family("render").header
 
