@@ -41,8 +41,8 @@ def goals(result: Result) -> list[dict[str, Any]]:
 def _figures(result: Result) -> Iterator[tuple[str, float, float, bool]]:
     """What is held to a plain limit: (what, measured, limit, whether the limit is an upper one)."""
     for row in _good(result, "replay"):
-        if row["scene"] == "million":
-            yield "render / fastest bare Embree loop, 1 M triangles", row["ratio"], replay.RATIO_LIMIT, True
+        if row["scene"] in replay.LARGE:
+            yield f"render / fastest bare Embree loop, {row['scene']}", row["ratio"], replay.RATIO_LIMIT, True
     for row in _good(result, "startup"):
         if row["renderer"] == "accuray":
             yield "whole process at 1 spp, s", row["seconds"], startup.TIME_LIMIT_S, True
@@ -82,7 +82,7 @@ def _circumstances(result: Result) -> str:
     busy = machine["load_at_start"][0] > BUSY_SHARE * machine["cores"]
     versions = {
         f"{row['renderer'].partition(':')[0]} {row['answer']['version'].split()[0]}": None
-        for name in ("cornell", "million", "efficiency")
+        for name in ("cornell", "million", "efficiency", "glossy", "frosted")
         for row in result.get(name, ())
         if "answer" in row
     }
@@ -111,7 +111,9 @@ def update(page: str, block: str) -> str:
 TABLES: dict[str, tuple[str, dict[str, str]]] = {
     "cornell": (f"Cornell box, {settings.SIZE} x {settings.SIZE}", dict(speed.SPEED_COLUMNS)),
     "million": (f"The box with a million triangles, {settings.SIZE} x {settings.SIZE}", dict(speed.SPEED_COLUMNS)),
-    "efficiency": ("Time to equal error", dict(speed.EFFICIENCY_COLUMNS)),
+    "efficiency": ("Time to equal error: Cornell box", dict(speed.EFFICIENCY_COLUMNS)),
+    "glossy": ("Time to equal error: rough metal over a textured floor", dict(speed.EFFICIENCY_COLUMNS)),
+    "frosted": ("Time to equal error: rough glass", dict(speed.EFFICIENCY_COLUMNS)),
     "startup": ("Whole process at 1 sample per pixel", dict(startup.COLUMNS)),
     "threads": ("Threads", dict(threads.COLUMNS)),
 }

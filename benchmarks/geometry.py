@@ -35,6 +35,24 @@ def quad_mesh(name: str, material: str, quads: Sequence[Quad], unit: float) -> M
     return Mesh(name, material, corners.astype(np.float32), (first + split).reshape(-1, 3))
 
 
+def carpet(name: str, material: str, corner: Sequence[float], size: float, repeats: float) -> Mesh:
+    """A square that faces up, from ``corner`` along +x and -z, with UVs from 0 to ``repeats`` along its sides."""
+    x, y, z = corner
+    positions = [[x, y, z], [x + size, y, z], [x + size, y, z - size], [x, y, z - size]]
+    uvs = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32) * np.float32(repeats)
+    normals = np.tile(np.array([0, 1, 0], dtype=np.float32), (4, 1))
+    faces = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+    return Mesh(name, material, np.array(positions, dtype=np.float32), faces, normals, uvs)
+
+
+def widened(quad: Quad, factor: float) -> list[list[float]]:
+    """A horizontal quad scaled about its middle."""
+    corners = np.asarray(quad, dtype=np.float64)
+    middle = corners.mean(axis=0)
+    scaled: list[list[float]] = (middle + (corners - middle) * [factor, 1.0, factor]).tolist()
+    return scaled
+
+
 def frame_around(outer: Quad, hole: Quad) -> list[Quad]:
     """Four quads between two coplanar quads of the same winding and first corner; all share corners (no T-junction)."""
     around = [(k, (k + 1) % 4) for k in range(4)]

@@ -14,9 +14,11 @@ def write_xml(scene: Scene, folder: Path, size: int, spp: int) -> Path:
     SubElement(integrator, "integer", name="max_depth", value="-1")
     SubElement(integrator, "integer", name="rr_depth", value=str(settings.ROULETTE_START))
     _sensor(root, scene, size, spp)
-    for name, spectrum in scene.reflectances.items():
+    for name, material in scene.materials.items():
+        if material.reflectance is None:
+            raise ValueError(f"scene {scene.name}, material {name}: only plain diffuse ones are written as XML")
         bsdf = SubElement(root, "bsdf", type="diffuse", id=name)
-        SubElement(bsdf, "spectrum", name="reflectance", value=_pairs(spectrum))
+        SubElement(bsdf, "spectrum", name="reflectance", value=_pairs(material.reflectance))
     for mesh in scene.meshes:
         shape = SubElement(root, "shape", type="ply")
         SubElement(shape, "string", name="filename", value=f"{mesh.name}.ply")

@@ -13,7 +13,7 @@ from typing import Any
 
 from benchmarks import memory, peers, replay, report, settings, speed, startup, threads
 
-BENCHMARKS = ("cornell", "million", "efficiency", "replay", "startup", "memory", "threads")
+BENCHMARKS = ("cornell", "million", "efficiency", "glossy", "frosted", "replay", "startup", "memory", "threads")
 QUICK = {"repeats": 2, "spp": 4, "reference_factor": 16, "runs": 3}
 """``--quick`` shows that everything runs; its figures are not comparable."""
 
@@ -97,10 +97,15 @@ def _speed(scene: str) -> Callable[[speed.Options, argparse.Namespace], Any]:
     return run
 
 
-def _efficiency(options: speed.Options, _arguments: argparse.Namespace) -> Any:
-    rows = speed.measure_efficiency(options)
-    print(report.table(rows, speed.EFFICIENCY_COLUMNS))
-    return rows
+def _efficiency(
+    scene: str, contenders: tuple[settings.Contender, ...], size: int
+) -> Callable[[speed.Options, argparse.Namespace], Any]:
+    def run(options: speed.Options, _arguments: argparse.Namespace) -> Any:
+        rows = speed.measure_efficiency(scene, contenders, options, size)
+        print(report.table(rows, speed.EFFICIENCY_COLUMNS))
+        return rows
+
+    return run
 
 
 def _startup(options: speed.Options, arguments: argparse.Namespace) -> Any:
@@ -150,7 +155,9 @@ def _failures(result: dict[str, Any]) -> bool:
 RUN: dict[str, Callable[[speed.Options, argparse.Namespace], Any]] = {
     "cornell": _speed("cornell"),
     "million": _speed("million"),
-    "efficiency": _efficiency,
+    "efficiency": _efficiency("cornell", settings.EFFICIENCY_CONTENDERS, settings.EFFICIENCY_SIZE),
+    "glossy": _efficiency("glossy", settings.MATERIALS_CONTENDERS, settings.MATERIALS_SIZE),
+    "frosted": _efficiency("frosted", settings.MATERIALS_CONTENDERS, settings.MATERIALS_SIZE),
     "replay": _replay,
     "startup": _startup,
     "memory": _memory,

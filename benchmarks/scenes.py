@@ -8,20 +8,28 @@ import argparse
 import csv
 import json
 import math
+import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from benchmarks import settings
-from benchmarks.geometry import Mesh, bumpy_sphere, frame_around, quad_mesh, write_ply
+from benchmarks.geometry import Mesh, bumpy_sphere, carpet, frame_around, quad_mesh, widened, write_ply
 
 DATA = Path(__file__).parents[1] / "accuray" / "data"
 MILLIMETRE = 0.001
 INLINE_TRIANGLES = 1000
 
-SCENES = ("cornell", "million", "room")
-"""The Cornell box; the box with a million-triangle sphere in place of the blocks; the box with nothing in it."""
+SCENES = ("cornell", "million", "glossy", "frosted", "room")
+"""The Cornell box; the box with, in place of the blocks, a sphere of a million triangles, one of rough metal over a
+textured floor, one of rough glass; the box with nothing in it."""
+
+BRICKS = Path(__file__).parents[1] / "scenes" / "textures" / "bricks.png"
+BRICK_REPEATS = 2
+LAMP_WIDENING = 2.6
+"""The lamp of those two is so much wider: no path tracer finds the caustics of a small one soon, and a few bright
+paths would decide the comparison."""
 
 RGB = {
     "white": (0.738376, 0.735961, 0.738503),
@@ -47,12 +55,28 @@ class Spectrum:
 
 
 @dataclass(frozen=True)
+class Material:
+    """What a surface is made of: ``kind`` is diffuse, conductor or dielectric.
+
+    A diffuse one has a reflectance or the name of a picture in sRGB that is repeated over the surface; the others have
+    ``eta`` and ``k``, the same for all wavelengths, and GGX facets of this perceived roughness (alpha is its square).
+    """
+
+    kind: str = "diffuse"
+    reflectance: Spectrum | None = None
+    picture: str = ""
+    eta: float = 1.0
+    k: float = 0.0
+    roughness: float = 0.0
+
+
+@dataclass(frozen=True)
 class Scene:
     """Meshes in metres and what they are made of. Reflectances cover 360-830 nm; emission ends with its table."""
 
     name: str
     meshes: tuple[Mesh, ...]
-    reflectances: dict[str, Spectrum]
+    materials: dict[str, Material]
     emission: Spectrum
     emitter: str
     camera: dict[str, Any]
@@ -66,27 +90,42 @@ def build(name: str) -> Scene:
     surfaces = page["surfaces"]
     ceiling = surfaces["ceiling"]
     white = [quad for part in ("floor", "back_wall") for quad in surfaces[part]["quads"]]
-    white += frame_around(ceiling["quads"][0], ceiling["hole_for_light"])
+    widening = LAMP_WIDENING if name in ("glossy", "frosted") else 1.0
+    lamp_quads = [widened(quad, widening) for quad in surfaces["light"]["quads"]]
+    white += frame_around(ceiling["quads"][0], widened(ceiling["hole_for_light"], widening))
     if name == "cornell":
         white += surfaces["short_block"]["quads"] + surfaces["tall_block"]["quads"]
     meshes = [
         quad_mesh("white", "white", white, MILLIMETRE),
         quad_mesh("red", "red", surfaces["left_wall"]["quads"], MILLIMETRE),
         quad_mesh("green", "green", surfaces["right_wall"]["quads"], MILLIMETRE),
-        quad_mesh("lamp", "lamp", surfaces["light"]["quads"], MILLIMETRE),
+        quad_mesh("lamp", "lamp", lamp_quads, MILLIMETRE),
     ]
-    if name == "million":
-        size = (settings.MILLION_SEGMENTS, settings.MILLION_RINGS)
-        meshes.append(bumpy_sphere("sphere", "white", (0.278, 0.2, 0.28), 0.16, *size))
     columns = _read_columns(DATA / "cornell_box_reflectance.csv")
-    paints = {
-        paint: _hold(Spectrum(columns["wavelength_nm"], columns[paint], RGB[paint]))
+    materials = {
+        paint: Material(reflectance=_hold(Spectrum(columns["wavelength_nm"], columns[paint], RGB[paint])))
         for paint in ("white", "red", "green")
     }
-    paints["lamp"] = Spectrum(VISIBLE, (LAMP_REFLECTANCE, LAMP_REFLECTANCE), RGB["lamp"])
+    lamp = Spectrum(VISIBLE, (LAMP_REFLECTANCE, LAMP_REFLECTANCE), RGB["lamp"])
+    materials["lamp"] = Material(reflectance=lamp)
+    if name in SPHERES:
+        size, material = SPHERES[name]
+        materials["sphere"] = material or materials["white"]
+        meshes.append(bumpy_sphere("sphere", "sphere", (0.278, 0.2, 0.28), 0.16, *size))
+    if name == "glossy":
+        materials["bricks"] = Material(picture=BRICKS.name)
+        meshes.append(carpet("bricks", "bricks", (0.03, 0.0005, 0.53), 0.5, BRICK_REPEATS))
     light = _read_columns(DATA / "cornell_box_light.csv")
     emission = Spectrum(light["wavelength_nm"], light["relative_radiance"], RGB["emission"])
-    return Scene(name, tuple(meshes), paints, emission, "lamp", _camera(page["camera"]))
+    return Scene(name, tuple(meshes), materials, emission, "lamp", _camera(page["camera"]))
+
+
+SPHERES = {
+    "million": ((settings.MILLION_SEGMENTS, settings.MILLION_RINGS), None),
+    "glossy": ((settings.SEGMENTS, settings.RINGS), Material("conductor", eta=0.2, k=3.9, roughness=0.35)),
+    "frosted": ((settings.SEGMENTS, settings.RINGS), Material("dielectric", eta=1.5, roughness=0.4)),
+}
+"""Segments and rings of the sphere in the box, and its material; None is the white of the walls."""
 
 
 def _hold(spectrum: Spectrum) -> Spectrum:
@@ -121,6 +160,9 @@ def write(scene: Scene, folder: Path, size: int) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     for mesh in scene.meshes:
         write_ply(mesh, folder / f"{mesh.name}.ply")
+    for material in scene.materials.values():
+        if material.picture:
+            shutil.copyfile(BRICKS.with_name(material.picture), folder / material.picture)
     (folder / "scene.json").write_text(json.dumps(_neutral(scene, size), indent=1))
     (folder / "scene.toml").write_text(_toml(scene, size))
     return folder
@@ -136,7 +178,7 @@ def _neutral(scene: Scene, size: int) -> dict[str, Any]:
         "threads": settings.THREADS,
         "roulette_start": settings.ROULETTE_START,
         "finite_depth": settings.FINITE_DEPTH,
-        "reflectances": {name: vars(spectrum) for name, spectrum in scene.reflectances.items()},
+        "materials": {name: asdict(material) for name, material in scene.materials.items()},
         "emission": vars(scene.emission),
         "emitter": scene.emitter,
         "meshes": [
@@ -158,18 +200,35 @@ def _toml(scene: Scene, size: int) -> str:
     lines += ["[film.filter]", 'type = "box"', "radius = 0.5", "", "[camera]", 'type = "perspective"']
     lines += [f"{key} = {value}" for key, value in scene.camera.items()]
     lines += ["", "[integrator]", 'type = "path"', "max_depth = -1", f"roulette_depth = {settings.ROULETTE_START}"]
-    for name, spectrum in scene.reflectances.items():
-        lines += ["", f"[materials.{name}]", 'type = "diffuse"', f"reflectance = {_inline(spectrum)}"]
+    for name, material in scene.materials.items():
+        lines += ["", f"[materials.{name}]", *_material(name, material)]
         if name == scene.emitter:
             lines.append(f"emission = {_inline(scene.emission)}")
     for mesh in scene.meshes:
         lines += ["", f"[shapes.{mesh.name}]", 'type = "mesh"', f'material = "{mesh.material}"']
-        if len(mesh.triangles) > INLINE_TRIANGLES:
+        if len(mesh.triangles) > INLINE_TRIANGLES or mesh.uvs is not None:
             lines.append(f'file = "{mesh.name}.ply"')
         else:
             lines.append(f"positions = {_rows(mesh.positions.tolist())}")
             lines.append(f"faces = {_rows(mesh.triangles.tolist())}")
     return "\n".join(lines) + "\n"
+
+
+def _material(name: str, material: Material) -> list[str]:
+    """The lines of a material's table; a picture's texture is named like the material."""
+    lines = [f'type = "{material.kind}"']
+    if material.kind == "conductor":
+        lines += [f"eta = {material.eta}", f"k = {material.k}"]
+    if material.kind == "dielectric":
+        lines += [f"ior = {material.eta}"]
+    if material.roughness:
+        lines += [f"roughness = {material.roughness}"]
+    if material.reflectance is not None:
+        lines += [f"reflectance = {_inline(material.reflectance)}"]
+    if material.picture:
+        lines += [f'reflectance = {{ texture = "{name}" }}', f"[textures.{name}]", 'type = "image"']
+        lines += [f'file = "{material.picture}"', 'filter = "bilinear"']
+    return lines
 
 
 def _inline(spectrum: Spectrum) -> str:

@@ -44,6 +44,13 @@ MILLION_SEGMENTS = 1000
 MILLION_RINGS = 500
 """The sphere of the second scene has 2 * segments * rings triangles: 1 000 000."""
 
+SEGMENTS = 360
+RINGS = 180
+"""The spheres of rough metal and of rough glass have 129 600 triangles."""
+
+MATERIALS_SIZE = 128
+"""Width and height of the images of those two scenes: references of rough glass take long."""
+
 STARTUP_SIZE = 256
 STARTUP_RUNS = 15
 STARTUP_VARIANT = "llvm_ad_spectral"
@@ -101,3 +108,11 @@ EFFICIENCY_CONTENDERS = (
     Contender("cycles"),
     Contender("luxcore"),
 )
+
+MATERIALS_CONTENDERS = (
+    Contender("accuray"),
+    Contender("mitsuba", "llvm_ad_spectral", "multijitter"),
+    Contender("mitsuba", "llvm_ad_rgb", "multijitter"),
+    Contender("cycles"),
+)
+"""For time to equal error with rough metal and rough glass; Mitsuba with its best sampler of the Cornell box."""

@@ -84,12 +84,15 @@ def _speed_row(contender: Contender, answer: Row) -> Row:
     }
 
 
-def measure_efficiency(options: Options) -> list[Row]:
-    """One row per renderer and sampler for the Cornell box: relMSE against its own reference, and 1/(relMSE s)."""
-    size, spp = options.size or settings.EFFICIENCY_SIZE, options.spp or settings.EFFICIENCY_SPP
-    folder = scenes.write(scenes.build("cornell"), options.work / f"cornell-{size}", size)
+def measure_efficiency(scene: str, contenders: Sequence[Contender], options: Options, size: int) -> list[Row]:
+    """One row per contender for ``scene``: relMSE against the contender's own reference, and 1/(relMSE s).
+
+    ``size`` and the settings' samples per pixel give way to those of ``options``.
+    """
+    size, spp = options.size or size, options.spp or settings.EFFICIENCY_SPP
+    folder = scenes.write(scenes.build(scene), options.work / f"{scene}-{size}", size)
     rows = []
-    for contender in _chosen(settings.EFFICIENCY_CONTENDERS, options):
+    for contender in _chosen(contenders, options):
         prefix = str(folder / f"{_file_name(contender)}-{spp}")
         task = _timed_pass(spp, options.repeats) | {"images": prefix, "keep": options.repeats}
         answer = peers.run_job(contender, _job(folder, [task]), folder)

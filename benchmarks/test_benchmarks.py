@@ -50,7 +50,7 @@ def test_rgb_is_that_of_the_spectrum(name: str) -> None:
     scene = scenes.build("cornell")
     cie = np.loadtxt(scenes.DATA / "cie1931_2deg_1nm.csv", delimiter=",", comments=["#", "w"])
     lights = np.loadtxt(scenes.DATA / "cie_illuminants_300_830_5nm.csv", delimiter=",", comments=["#", "w"])
-    spectrum = scene.emission if name == "emission" else scene.reflectances[name]
+    spectrum = scene.emission if name == "emission" else scene.materials[name].reflectance
     values = np.interp(cie[:, 0], spectrum.wavelengths, spectrum.values, left=0, right=0)
     light = np.ones(len(cie)) if name == "emission" else np.interp(cie[:, 0], lights[:, 0], lights[:, 3])
     xyz = cie[:, 1:].T @ (values * light) / (cie[:, 2] @ light)

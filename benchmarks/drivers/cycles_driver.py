@@ -5,6 +5,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import blender
 import numpy as np
 from common import Image, drive
 from ply import read_ply
@@ -21,11 +22,13 @@ class Cycles:
         self.bpy.ops.wm.read_factory_settings(use_empty=True)
         self.version = str(self.bpy.app.version_string)
         self.scene = self.bpy.context.scene
-        self._settings(job, scene)
-        self._camera(scene)
-        materials = {name: self._material(name, scene) for name in scene["reflectances"]}
+        blender.configure(self.scene, scene["width"], scene["height"], job["threads"], scene["finite_depth"])
+        self.scene.cycles.min_light_bounces = scene["roulette_start"]
+        blender.place_camera(self.bpy, self.scene, scene["camera"], "HORIZONTAL")
+        folder = Path(job["scene"])
+        materials = {name: self._material(folder, name, scene) for name in scene["materials"]}
         for mesh in scene["meshes"]:
-            self._mesh(Path(job["scene"]) / mesh["file"], mesh, materials[mesh["material"]])
+            self._mesh(folder / mesh["file"], mesh, materials[mesh["material"]])
 
     def render(self, spp: int, seed: int) -> float:
         self.scene.cycles.samples = spp
@@ -35,75 +38,41 @@ class Cycles:
         return float(spp)
 
     def image(self) -> Image:
-        """The render result can only be saved, so it goes through a float EXR; Blender's rows start at the bottom."""
         with tempfile.TemporaryDirectory() as folder:
-            path = str(Path(folder) / "image.exr")
-            self.write(path)
-            saved = self.bpy.data.images.load(path)
-            saved.colorspace_settings.name = "Linear Rec.709"
-            pixels = np.empty(saved.size[0] * saved.size[1] * 4, dtype=np.float32)
-            saved.pixels.foreach_get(pixels)
-            image = pixels.reshape(saved.size[1], saved.size[0], 4)[::-1, :, :3].copy()
-            self.bpy.data.images.remove(saved)
+            image: Image = blender.read_result(self.bpy, Path(folder))
         return image
 
     def write(self, path: str) -> None:
-        self.bpy.data.images["Render Result"].save_render(path)
+        blender.save_result(self.bpy, Path(path))
 
-    def _settings(self, job: dict[str, Any], scene: dict[str, Any]) -> None:
-        render, cycles = self.scene.render, self.scene.cycles
-        render.engine = "CYCLES"
-        render.resolution_x, render.resolution_y, render.resolution_percentage = scene["width"], scene["height"], 100
-        render.threads_mode, render.threads = "FIXED", job["threads"]
-        render.use_compositing = render.use_sequencer = False
-        render.image_settings.file_format = "OPEN_EXR"
-        render.image_settings.color_depth = "32"
-        self.scene.view_settings.view_transform = "Raw"
-        cycles.device = "CPU"
-        cycles.use_denoising = cycles.use_adaptive_sampling = cycles.use_guiding = False
-        cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
-        cycles.light_sampling_threshold = 0.0
-        cycles.pixel_filter_type = "BOX"
-        cycles.min_light_bounces = scene["roulette_start"]
-        for kind in ("max", "diffuse", "glossy", "transmission"):
-            setattr(cycles, f"{kind}_bounces", scene["finite_depth"])
-
-    def _camera(self, scene: dict[str, Any]) -> None:
-        camera = scene["camera"]
-        lens = self.bpy.data.cameras.new("camera")
-        lens.sensor_fit, lens.clip_start, lens.clip_end = "HORIZONTAL", 0.001, 100.0
-        lens.angle = np.radians(camera["fov"])
-        forward = np.subtract(camera["look_at"], camera["position"])
-        forward /= np.linalg.norm(forward)
-        right = np.cross(forward, camera["up"])
-        right /= np.linalg.norm(right)
-        to_world = np.eye(4)
-        to_world[:3] = np.stack([right, np.cross(right, forward), -forward, camera["position"]], axis=1)
-        placed = self.bpy.data.objects.new("camera", lens)
-        placed.matrix_world = to_world.T.tolist()
-        self.scene.collection.objects.link(placed)
-        self.scene.camera = placed
-
-    def _material(self, name: str, scene: dict[str, Any]) -> Any:
-        """A diffuse material; the emitter's adds its emission."""
-        material = self.bpy.data.materials.new(name)
+    def _material(self, folder: Path, name: str, scene: dict[str, Any]) -> Any:
+        """One of the scene's materials; the emitter's adds its emission."""
+        material, table = self.bpy.data.materials.new(name), scene["materials"][name]
         material.use_nodes = True
-        nodes, links = material.node_tree.nodes, material.node_tree.links
-        nodes.clear()
-        diffuse, output = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeOutputMaterial")
-        diffuse.inputs["Color"].default_value = (*scene["reflectances"][name]["rgb"], 1.0)
-        surface = diffuse.outputs[0]
+        tree = material.node_tree
+        tree.nodes.clear()
+        surface = self._surface(tree, folder, table).outputs[0]
         if name == scene["emitter"]:
-            emission, add = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeAddShader")
-            peak = max(scene["emission"]["rgb"])
-            emission.inputs["Color"].default_value = (*(value / peak for value in scene["emission"]["rgb"]), 1.0)
-            emission.inputs["Strength"].default_value = peak
-            links.new(surface, add.inputs[0])
-            links.new(emission.outputs[0], add.inputs[1])
+            add, peak = tree.nodes.new("ShaderNodeAddShader"), max(scene["emission"]["rgb"])
+            emission = blender.emission(tree, material, [value / peak for value in scene["emission"]["rgb"]], peak)
+            tree.links.new(surface, add.inputs[0])
+            tree.links.new(emission.outputs[0], add.inputs[1])
             surface = add.outputs[0]
-            material.cycles.emission_sampling = "FRONT"
-        links.new(surface, output.inputs["Surface"])
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(surface, output.inputs["Surface"])
         return material
+
+    def _surface(self, tree: Any, folder: Path, table: dict[str, Any]) -> Any:
+        if table["kind"] == "conductor":
+            return blender.metal(tree, table["eta"], table["k"], table["roughness"])
+        if table["kind"] == "dielectric":
+            return blender.glass(tree, table["eta"], table["roughness"])
+        if not table["picture"]:
+            return blender.diffuse(tree, table["reflectance"]["rgb"])
+        shader = blender.diffuse(tree, None)
+        picture = blender.picture(self.bpy, tree, folder / table["picture"], "sRGB")
+        tree.links.new(picture.outputs["Color"], shader.inputs["Color"])
+        return shader
 
     def _mesh(self, path: Path, description: dict[str, Any], material: Any) -> None:
         vertices, triangles = read_ply(path)

@@ -84,9 +84,11 @@ class LuxCore:
 
     def _materials(self) -> dict[str, Any]:
         properties: dict[str, Any] = {}
-        for name, spectrum in self.description["reflectances"].items():
+        for name, table in self.description["materials"].items():
+            if table["kind"] != "diffuse" or table["picture"]:
+                raise ValueError(f"material {name}: this driver knows plain diffuse ones only")
             properties[f"scene.materials.{name}.type"] = "matte"
-            properties[f"scene.materials.{name}.kd"] = spectrum["rgb"]
+            properties[f"scene.materials.{name}.kd"] = table["reflectance"]["rgb"]
         properties[f"scene.materials.{self.description['emitter']}.emission"] = self.description["emission"]["rgb"]
         return properties
 

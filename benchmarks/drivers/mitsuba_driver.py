@@ -34,15 +34,13 @@ class Mitsuba:
         self.mitsuba.util.write_bitmap(path, self.pixels, write_async=False)
 
     def _description(self, job: dict[str, Any], scene: dict[str, Any]) -> dict[str, Any]:
-        materials = {
-            name: {"type": "diffuse", "reflectance": self._spectrum(spectrum)}
-            for name, spectrum in scene["reflectances"].items()
-        }
+        folder = Path(job["scene"])
+        materials = {name: self._bsdf(folder, table) for name, table in scene["materials"].items()}
         shapes = {}
         for mesh in scene["meshes"]:
             shape: dict[str, Any] = {
                 "type": "ply",
-                "filename": str(Path(job["scene"]) / mesh["file"]),
+                "filename": str(folder / mesh["file"]),
                 "face_normals": not mesh["smooth"],
                 "bsdf": materials[mesh["material"]],
             }
@@ -51,6 +49,19 @@ class Mitsuba:
             shapes[mesh["name"]] = shape
         integrator = {"type": "path", "max_depth": -1, "rr_depth": scene["roulette_start"]}
         return {"type": "scene", "integrator": integrator, "sensor": self._sensor(job, scene), **shapes}
+
+    def _bsdf(self, folder: Path, table: dict[str, Any]) -> dict[str, Any]:
+        """Its roughness is our perceived one squared; these microfacets lose what scatters among them twice."""
+        rough = {"distribution": "ggx", "alpha": table["roughness"] ** 2}
+        if table["kind"] == "conductor":
+            return {"type": "roughconductor", "eta": table["eta"], "k": table["k"], **rough}
+        if table["kind"] == "dielectric":
+            return {"type": "roughdielectric", "int_ior": table["eta"], "ext_ior": 1.0, **rough}
+        if table["picture"]:
+            reflectance: dict[str, Any] = {"type": "bitmap", "filename": str(folder / table["picture"])}
+        else:
+            reflectance = self._spectrum(table["reflectance"])
+        return {"type": "diffuse", "reflectance": reflectance}
 
     def _sensor(self, job: dict[str, Any], scene: dict[str, Any]) -> dict[str, Any]:
         camera = scene["camera"]

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import blender
 import numpy as np
 
 SPHERE_SEGMENTS, SPHERE_RINGS = 256, 128
@@ -23,56 +24,19 @@ class Stage:
         self.bpy: Any = importlib.import_module("bpy")
         self.bpy.ops.wm.read_factory_settings(use_empty=True)
         self.job, self.scene = job, self.bpy.context.scene
-        self._settings()
-        self._camera()
+        film = self.job["film"]
+        blender.configure(self.scene, film["width"], film["height"], job["threads"], BOUNCES)
+        self.scene.cycles.samples, self.scene.cycles.seed = job["spp"], 1
+        blender.place_camera(self.bpy, self.scene, job["camera"], "VERTICAL")
         self._sky()
         materials = {name: self._material(name, table) for name, table in job["materials"].items()}
         for name, shape in job["shapes"].items():
             self._shape(name, shape, materials[shape["material"]])
 
     def render(self) -> Any:
-        """The picture (H, W, 3) by way of a float EXR; Blender's rows start at the bottom."""
-        path = str(Path(self.job["folder"]) / "image.exr")
+        """The picture, linear Rec.709 (H, W, 3)."""
         self.bpy.ops.render.render(write_still=False)
-        self.bpy.data.images["Render Result"].save_render(path)
-        saved = self.bpy.data.images.load(path)
-        saved.colorspace_settings.name = "Linear Rec.709"
-        pixels = np.empty(saved.size[0] * saved.size[1] * 4, dtype=np.float32)
-        saved.pixels.foreach_get(pixels)
-        return pixels.reshape(saved.size[1], saved.size[0], 4)[::-1, :, :3].copy()
-
-    def _settings(self) -> None:
-        render, cycles, film = self.scene.render, self.scene.cycles, self.job["film"]
-        render.engine = "CYCLES"
-        render.resolution_x, render.resolution_y, render.resolution_percentage = film["width"], film["height"], 100
-        render.threads_mode, render.threads = "FIXED", self.job["threads"]
-        render.use_compositing = render.use_sequencer = False
-        render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
-        self.scene.view_settings.view_transform = "Raw"
-        cycles.device, cycles.samples, cycles.seed = "CPU", self.job["spp"], 1
-        cycles.use_denoising = cycles.use_adaptive_sampling = cycles.use_guiding = False
-        cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
-        cycles.light_sampling_threshold = 0.0
-        cycles.caustics_reflective = cycles.caustics_refractive = True
-        cycles.pixel_filter_type = "BOX"
-        for kind in ("max", "diffuse", "glossy", "transmission"):
-            setattr(cycles, f"{kind}_bounces", BOUNCES)
-
-    def _camera(self) -> None:
-        camera = self.job["camera"]
-        lens = self.bpy.data.cameras.new("camera")
-        lens.sensor_fit, lens.clip_start, lens.clip_end = "VERTICAL", 0.001, 100.0
-        lens.angle = np.radians(camera["fov"])
-        forward = np.subtract(camera["look_at"], camera["position"])
-        forward /= np.linalg.norm(forward)
-        right = np.cross(forward, [0.0, 1.0, 0.0])
-        right /= np.linalg.norm(right)
-        to_world = np.eye(4)
-        to_world[:3] = np.stack([right, np.cross(right, forward), -forward, camera["position"]], axis=1)
-        placed = self.bpy.data.objects.new("camera", lens)
-        placed.matrix_world = to_world.T.tolist()
-        self.scene.collection.objects.link(placed)
-        self.scene.camera = placed
+        return blender.read_result(self.bpy, Path(self.job["folder"]))
 
     def _sky(self) -> None:
         world = self.bpy.data.worlds.new("world")
@@ -90,10 +54,7 @@ class Stage:
         tree.nodes.clear()
         output = tree.nodes.new("ShaderNodeOutputMaterial")
         if "emission" in table:
-            shader = tree.nodes.new("ShaderNodeEmission")
-            shader.inputs["Color"].default_value = (*table["emission"]["rgb"], 1.0)
-            shader.inputs["Strength"].default_value = table["emission"]["scale"]
-            material.cycles.emission_sampling = "FRONT"
+            shader = blender.emission(tree, material, table["emission"]["rgb"], table["emission"]["scale"])
         else:
             shader = getattr(self, f"_{table['type']}")(tree, table)
         tree.links.new(shader.outputs[0], output.inputs["Surface"])
@@ -102,12 +63,12 @@ class Stage:
         return material
 
     def _diffuse(self, tree: Any, table: dict[str, Any]) -> Any:
-        shader, reflectance = tree.nodes.new("ShaderNodeBsdfDiffuse"), table["reflectance"]
-        if isinstance(reflectance, dict):
+        reflectance = table["reflectance"]
+        textured = isinstance(reflectance, dict)
+        shader = blender.diffuse(tree, None if textured else reflectance)
+        if textured:
             picture = self._picture(tree, reflectance["texture"], "sRGB")
             tree.links.new(picture.outputs["Color"], shader.inputs["Color"])
-        else:
-            shader.inputs["Color"].default_value = (*reflectance, 1.0)
         if "normal_map" in table:
             normals = tree.nodes.new("ShaderNodeNormalMap")
             picture = self._picture(tree, table["normal_map"], "Non-Color")
@@ -116,20 +77,10 @@ class Stage:
         return shader
 
     def _conductor(self, tree: Any, table: dict[str, Any]) -> Any:
-        shader = tree.nodes.new("ShaderNodeBsdfMetallic")
-        shader.distribution, shader.fresnel_type = "MULTI_GGX", "PHYSICAL_CONDUCTOR"
-        shader.inputs["IOR"].default_value = [table["eta"]] * 3
-        shader.inputs["Extinction"].default_value = [table["k"]] * 3
-        shader.inputs["Roughness"].default_value = table.get("roughness", 0.0)
-        return shader
+        return blender.metal(tree, table["eta"], table["k"], table.get("roughness", 0.0))
 
     def _dielectric(self, tree: Any, table: dict[str, Any]) -> Any:
-        shader = tree.nodes.new("ShaderNodeBsdfGlass")
-        shader.distribution = "MULTI_GGX"
-        shader.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-        shader.inputs["IOR"].default_value = table["ior"]
-        shader.inputs["Roughness"].default_value = table.get("roughness", 0.0)
-        return shader
+        return blender.glass(tree, table["ior"], table.get("roughness", 0.0))
 
     def _absorption(self, tree: Any, table: dict[str, Any]) -> Any:
         """Cycles' coefficient is density times 1 - colour; ours is such that the colour is left after the depth."""
@@ -141,14 +92,8 @@ class Stage:
 
     def _picture(self, tree: Any, name: str, space: str) -> Any:
         texture = self.job["textures"][name]
-        node, mapping = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeMapping")
-        place = tree.nodes.new("ShaderNodeUVMap")
-        node.image = self.bpy.data.images.load(str(Path(self.job["textures_folder"]) / texture["file"]))
-        node.image.colorspace_settings.name = space
-        mapping.inputs["Scale"].default_value = (*texture["uv_scale"], 1.0)
-        tree.links.new(place.outputs["UV"], mapping.inputs["Vector"])
-        tree.links.new(mapping.outputs["Vector"], node.inputs["Vector"])
-        return node
+        path = Path(self.job["textures_folder"]) / texture["file"]
+        return blender.picture(self.bpy, tree, path, space, tuple(texture["uv_scale"]))
 
     def _shape(self, name: str, shape: dict[str, Any], material: Any) -> None:
         if shape["type"] == "rectangle":
