@@ -59,7 +59,8 @@ class Material:
     """What a surface is made of: ``kind`` is diffuse, conductor or dielectric.
 
     A diffuse one has a reflectance or the name of a picture in sRGB that is repeated over the surface; the others have
-    ``eta`` and ``k``, the same for all wavelengths, and GGX facets of this perceived roughness (alpha is its square).
+    ``eta`` and ``k``, the same for all wavelengths, and GGX facets of this perceived roughness (alpha is its square),
+    which lose what they scatter more than once: the one model that all renderers have.
     """
 
     kind: str = "diffuse"
@@ -222,7 +223,7 @@ def _material(name: str, material: Material) -> list[str]:
     if material.kind == "dielectric":
         lines += [f"ior = {material.eta}"]
     if material.roughness:
-        lines += [f"roughness = {material.roughness}"]
+        lines += [f"roughness = {material.roughness}", "compensate = false"]
     if material.reflectance is not None:
         lines += [f"reflectance = {_inline(material.reflectance)}"]
     if material.picture:

@@ -70,20 +70,20 @@ def diffuse(tree: Any, rgb: list[float] | None) -> Any:
     return shader
 
 
-def metal(tree: Any, eta: float, k: float, roughness: float) -> Any:
-    """GGX with compensation; the same eta and k for every colour."""
+def metal(tree: Any, eta: float, k: float, roughness: float, facets: str) -> Any:
+    """The same eta and k for every colour. ``facets``: MULTI_GGX with compensation, or GGX without."""
     shader = tree.nodes.new("ShaderNodeBsdfMetallic")
-    shader.distribution, shader.fresnel_type = "MULTI_GGX", "PHYSICAL_CONDUCTOR"
+    shader.distribution, shader.fresnel_type = facets, "PHYSICAL_CONDUCTOR"
     shader.inputs["IOR"].default_value = [eta] * 3
     shader.inputs["Extinction"].default_value = [k] * 3
     shader.inputs["Roughness"].default_value = roughness
     return shader
 
 
-def glass(tree: Any, ior: float, roughness: float) -> Any:
-    """GGX with compensation, reflection and refraction without tint."""
+def glass(tree: Any, ior: float, roughness: float, facets: str) -> Any:
+    """Reflection and refraction without tint; ``facets`` as for ``metal``."""
     shader = tree.nodes.new("ShaderNodeBsdfGlass")
-    shader.distribution = "MULTI_GGX"
+    shader.distribution = facets
     shader.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     shader.inputs["IOR"].default_value = ior
     shader.inputs["Roughness"].default_value = roughness

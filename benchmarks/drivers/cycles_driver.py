@@ -64,9 +64,9 @@ class Cycles:
 
     def _surface(self, tree: Any, folder: Path, table: dict[str, Any]) -> Any:
         if table["kind"] == "conductor":
-            return blender.metal(tree, table["eta"], table["k"], table["roughness"])
+            return blender.metal(tree, table["eta"], table["k"], table["roughness"], "GGX")
         if table["kind"] == "dielectric":
-            return blender.glass(tree, table["eta"], table["roughness"])
+            return blender.glass(tree, table["eta"], table["roughness"], "GGX")
         if not table["picture"]:
             return blender.diffuse(tree, table["reflectance"]["rgb"])
         shader = blender.diffuse(tree, None)

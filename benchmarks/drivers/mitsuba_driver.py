@@ -51,7 +51,7 @@ class Mitsuba:
         return {"type": "scene", "integrator": integrator, "sensor": self._sensor(job, scene), **shapes}
 
     def _bsdf(self, folder: Path, table: dict[str, Any]) -> dict[str, Any]:
-        """Its roughness is our perceived one squared; these microfacets lose what scatters among them twice."""
+        """Mitsuba's roughness, alpha, is the square of the perceived one."""
         rough = {"distribution": "ggx", "alpha": table["roughness"] ** 2}
         if table["kind"] == "conductor":
             return {"type": "roughconductor", "eta": table["eta"], "k": table["k"], **rough}

@@ -77,10 +77,10 @@ class Stage:
         return shader
 
     def _conductor(self, tree: Any, table: dict[str, Any]) -> Any:
-        return blender.metal(tree, table["eta"], table["k"], table.get("roughness", 0.0))
+        return blender.metal(tree, table["eta"], table["k"], table.get("roughness", 0.0), "MULTI_GGX")
 
     def _dielectric(self, tree: Any, table: dict[str, Any]) -> Any:
-        return blender.glass(tree, table["ior"], table.get("roughness", 0.0))
+        return blender.glass(tree, table["ior"], table.get("roughness", 0.0), "MULTI_GGX")
 
     def _absorption(self, tree: Any, table: dict[str, Any]) -> Any:
         """Cycles' coefficient is density times 1 - colour; ours is such that the colour is left after the depth."""
