@@ -138,7 +138,9 @@ FAIR = {
         "the lamp 2.5 times as wide and long, 1/6.25 as bright", partial(enlarged, lamp="lamp", factor=2.5)
     ),
     "textured-light": Fair("the sky 20 times as bright", partial(brightened, light="night", factor=20)),
-    "vertex-colours": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
+    "vertex-colours": Fair(
+        "the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)
+    ),
     "zoo": Fair("as it is: its lamps are large"),
 }
 
