@@ -20,6 +20,9 @@ WHOLE = (("emission", None), ("opacity", 1.0))
 MAPPED = (("normal_map", None), ("bump_map", None))
 """The same of a material under a layer, whose maps bend both."""
 
+MATTE = "diffuse"
+"""What two layers may lie upon."""
+
 Objects = dict[str, dict[str, Any]]
 
 
@@ -44,15 +47,27 @@ def check_parts(materials: Objects, schema: Schema, where: Where) -> None:
     for name, material in materials.items():
         layered = material["type"] in schema.family("bsdf").types
         for key, part in parts_of(material, schema):
-            plain = materials[part]["type"] in schema.family("bsdf").types
-            if layered and (not plain or next(parts_of(materials[part], schema), None) is not None):
-                problem = f"is {materials[part]['type']}, which is made of others itself"
-                raise where.child(name, key).error(problem, value=part, allowed="a plain material: one layer")
+            if layered:
+                _check_base(materials, part, schema, where.child(name, key))
             for header, neutral in WHOLE + (MAPPED if layered else ()):
                 if materials[part][header] != neutral:
                     raise where.child(part, header).error(
                         f'cannot be given to a part of "{name}" ({key})', allowed=f'{header} of "{name}" as a whole'
                     )
+
+
+def _check_base(materials: Objects, part: str, schema: Schema, where: Where) -> None:
+    """Under a layer lies what has no parts, or a layer upon what is matte."""
+    type_ = materials[part]["type"]
+    under = [materials[name]["type"] for _, name in parts_of(materials[part], schema)]
+    if type_ in schema.family("bsdf").types and under in ([], [MATTE]):
+        return
+    problem = f"is {type_} over {under[0]}" if type_ in schema.family("bsdf").types else f"is {type_}"
+    raise where.error(
+        f"{problem}, which is made of others itself",
+        value=part,
+        allowed=f"a material without parts, or a coated one whose base is {MATTE}",
+    )
 
 
 def _count(materials: Objects, name: str, above: tuple[str, ...], schema: Schema, where: Where) -> int:

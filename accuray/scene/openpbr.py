@@ -46,12 +46,10 @@ def settle(materials: dict[str, Table], where: Where) -> None:
                 "tints the reflection of a dielectric, which reflects all colours alike",
                 allowed="1, or base_metalness = 1: the colour of metal towards its edge",
             )
-        if m["base_metalness"] != 0.0 and m["thin_film_weight"] != 0.0:
-            raise at.child("thin_film_weight").error(
-                "puts a film on metal that has no index", allowed="base_metalness = 0, or a `conductor` with a film"
+        if m["coat_darkening"] != 1.0 and isinstance(m["base_color"], TextureUse):
+            raise at.child("coat_darkening").error(
+                "needs a base colour that is known before the hit", allowed="1, or a base_color that is no texture"
             )
-        if m["transmission_depth"] == 0.0 and not _is_one(m["transmission_color"]):
-            raise at.child("transmission_color").error("needs a depth", allowed="transmission_depth above 0")
 
 
 def tree(m: Table) -> Table:
@@ -60,19 +58,46 @@ def tree(m: Table) -> Table:
     Args:
         m: all parameters of an openpbr material, as a Scene holds them.
     """
+    bare = _base(m, _matte(m))
+    coated = _everywhere(bare, lambda leaf: _under_coat(m, leaf))
+    if m["coat_darkening"] != 1.0:
+        undarkened = _base(m, _undarkened(m, _matte(m)))
+        undarkened = _everywhere(undarkened, lambda leaf: _under_coat(m, leaf))
+        coated = _mixed(undarkened, coated, m["coat_darkening"])
+    return _fuzzy(m, _mixed(bare, coated, m["coat_weight"]))
+
+
+def _base(m: Table, matte: Table) -> Table:
+    """All below coat and fuzz, from its matte part."""
     clear = _wall(m) if m["geometry_thin_walled"] else _body(m)
-    dielectric = _mixed(_plastic(m), clear, m["transmission_weight"])
-    base = _mixed(dielectric, _metal(m), m["base_metalness"])
-    coated = _mixed(base, _everywhere(base, lambda leaf: _under_coat(m, leaf)), m["coat_weight"])
-    return _fuzzy(m, coated)
+    dielectric = _mixed(_plastic(m, matte), clear, m["transmission_weight"])
+    return _mixed(dielectric, _metal(m), m["base_metalness"])
 
 
 def _metal(m: Table) -> Table:
-    return _coloured(m, {"type": "conductor", "edge_tint": m["specular_color"], **_facets(m, "specular")})
+    metal = {"type": "conductor", "edge_tint": m["specular_color"], **_facets(m, "specular"), **_film(m)}
+    return _filmed(m, _coloured(m, metal))
 
 
 def _matte(m: Table) -> Table:
     return _coloured(m, {"type": "diffuse", "roughness": m["base_diffuse_roughness"]})
+
+
+def _undarkened(m: Table, matte: Table) -> Table:
+    """The matte part, so much brighter that it looks under the coat as it does without.
+
+    Of the light that gets to a surface of reflectance r, (1 - k) r / (1 - k r) comes out if what is above sends the
+    share k of diffuse light back.
+    """
+    weight = m["specular_weight"]
+    gloss = m["specular_ior"] if isinstance(weight, TextureUse) else weighted_ior(m["specular_ior"], weight)
+    bare, under = kept_inside(1.0, gloss), kept_inside(m["coat_ior"], gloss)
+
+    def brighter(reflectance: float) -> float:
+        out = (1.0 - bare) * reflectance / (1.0 - bare * reflectance)
+        return out / (1.0 - under + under * out)
+
+    return _everywhere(matte, lambda leaf: {**leaf, "reflectance": _mapped(leaf["reflectance"], brighter)})
 
 
 def _coloured(m: Table, base: Table) -> Table:
@@ -82,13 +107,13 @@ def _coloured(m: Table, base: Table) -> Table:
     return {**base, "reflectance": _times(m["base_color"], m["base_weight"])}
 
 
-def _plastic(m: Table) -> Table:
+def _plastic(m: Table, matte: Table) -> Table:
     """A matte base under a surface that reflects; without the latter where the specular weight is 0."""
 
     def glossy(ior: float) -> Callable[[Table], Table]:
         return lambda base: {"type": "coated", "base": base, "ior": ior, **_facets(m, "specular"), **_film(m)}
 
-    matte, weight = _matte(m), m["specular_weight"]
+    weight = m["specular_weight"]
     if isinstance(weight, TextureUse):
         return _mixed(matte, _filmed(m, _everywhere(matte, glossy(m["specular_ior"]))), weight)
     ior = weighted_ior(m["specular_ior"], weight)
@@ -103,18 +128,25 @@ def _body(m: Table) -> Table:
     body = {"type": "dielectric", "ior": index, **_facets(m, "specular"), **_film(m)}
     if m["transmission_depth"] > 0.0:
         body |= {key: m[key] for key in ("transmission_color", "transmission_depth")}
+    elif not _is_one(m["transmission_color"]):
+        body["transmission_color"] = m["transmission_color"]
     return _filmed(m, body)
 
 
 def _wall(m: Table) -> Table:
-    return {"type": "thin_dielectric", "ior": Spectrum("constant", "index", value=m["specular_ior"])}
+    """A pane. One that is rough or coloured or has a film is a layer before the pane's far side, of one index."""
+    pane = {"type": "thin_dielectric", "ior": Spectrum("constant", "index", value=m["specular_ior"])}
+    if m["specular_roughness"] == 0.0 and _is_one(m["transmission_color"]) and not _film(m):
+        return pane
+    layer = {"type": "coated", "base": pane, "ior": m["specular_ior"], "transmission_color": m["transmission_color"]}
+    return _filmed(m, {**layer, **_facets(m, "specular"), **_film(m)})
 
 
 def _under_coat(m: Table, leaf: Table) -> Table:
-    """A plain material under the coat, whose surface takes the place of a glossy one of its own."""
-    base = leaf["base"] if leaf["type"] == "coated" else leaf
+    """A plain material under the coat. Gloss on what is matte stays; a wall's front becomes the coat's."""
+    wall = leaf["type"] == "coated" and leaf["base"]["type"] == "thin_dielectric"
     share = _root(m["coat_color"])
-    coat = {"type": "coated", "base": base, "ior": m["coat_ior"], "transmission_color": share}
+    coat = {"type": "coated", "base": leaf["base"] if wall else leaf, "ior": m["coat_ior"], "transmission_color": share}
     return {**coat, **_facets(m, "coat")}
 
 
@@ -157,6 +189,35 @@ def weighted_ior(ior: float, weight: float) -> float:
     return (1.0 + amplitude) / (1.0 - amplitude)
 
 
+def kept_inside(coat: float, below: float) -> float:
+    """Share of diffuse light below two smooth interfaces that they send back, of indices 1, ``coat``, ``below``.
+
+    The mean over the square of the sine, by the midpoint rule, of what Fresnel's equations give for the pair with all
+    reflections between them.
+    """
+    if below == 1.0:
+        return kept_inside(1.0, coat) if coat > 1.0 else 0.0
+    count = 512
+    passed = 0.0
+    for step in range(count):
+        outside = (step + 0.5) / count
+        first = _fresnel(math.sqrt(1.0 - outside), coat)
+        second = _fresnel(math.sqrt(1.0 - outside / coat**2), below / coat)
+        passed += (1.0 - first) * (1.0 - second) / (1.0 - first * second)
+    return 1.0 - passed / count / below**2
+
+
+def _fresnel(cosine: float, ior: float) -> float:
+    """Reflectance of an interface for unpolarised light that comes at ``cosine`` (Born and Wolf 1999)."""
+    sine2 = (1.0 - cosine * cosine) / (ior * ior)
+    if sine2 >= 1.0:
+        return 1.0
+    beyond = math.sqrt(1.0 - sine2)
+    s = (cosine - ior * beyond) / (cosine + ior * beyond)
+    p = (ior * cosine - beyond) / (ior * cosine + beyond)
+    return 0.5 * (s * s + p * p)
+
+
 def dispersed(ior: float, scale: float, abbe_number: float) -> Spectrum:
     """Cauchy's equation through ``ior`` at the line d with the Abbe number ``abbe_number / scale``."""
     if scale == 0.0 or ior == 1.0:
@@ -187,11 +248,16 @@ def _times(value: Any, factor: float) -> Any:
 
 def _root(colour: Spectrum) -> Spectrum:
     """What is left after one way if the colour is left after two of them."""
+    return _mapped(colour, math.sqrt)
+
+
+def _mapped(colour: Spectrum, change: Callable[[float], float]) -> Spectrum:
+    """The colour with its numbers changed: those of a constant, an RGB triple or a table."""
     if colour.form == "constant":
-        return replace(colour, value=math.sqrt(colour.value))
+        return replace(colour, value=change(colour.value * colour.scale), scale=1.0)
     if colour.form == "rgb":
-        return replace(colour, rgb=tuple(map(math.sqrt, colour.rgb)))
-    return replace(colour, values=tuple(map(math.sqrt, colour.values)), scale=math.sqrt(colour.scale))
+        return replace(colour, rgb=tuple(change(c * colour.scale) for c in colour.rgb), scale=1.0)
+    return replace(colour, values=tuple(change(v * colour.scale) for v in colour.values), scale=1.0)
 
 
 def _is_one(colour: Any) -> bool:

@@ -20,7 +20,7 @@ from accuray.scene.paths import Confinement
 from accuray.scene.scope import Scope
 from accuray.scene.shapes import check_shapes
 from accuray.scene.spectra import check_unused
-from accuray.scene.textures import check_bumps, check_films, check_opacity, check_vertices, settle_colour_spaces
+from accuray.scene.textures import check_bumps, check_opacity, check_vertices, settle_colour_spaces
 from accuray.scene.units import LENGTH_UNITS
 
 FORMAT_VERSION = 1
@@ -97,7 +97,6 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     check_parts(materials, schema, top.child("materials"))
     settle_colour_spaces(textures, materials, top.child("textures"))
     check_opacity(materials, top)
-    check_films(materials, top)
     check_bumps(textures, materials, schema, top)
     check_vertices(textures, materials, shapes, schema, top)
     _check_spectra(scope)

@@ -102,15 +102,6 @@ def check_opacity(materials: Objects, where: Where) -> None:
             )
 
 
-def check_films(materials: Objects, where: Where) -> None:
-    """Interference in a film needs the index of what is below it, not its colour. Raises SceneError."""
-    for name, material in materials.items():
-        if material.get("film_thickness", 0.0) != 0.0 and material.get("reflectance") is not None:
-            raise where.child("materials", name, "film_thickness").error(
-                "cannot go with `reflectance`", allowed="a film on a metal given by its name, or by eta and k"
-            )
-
-
 def check_vertices(textures: Objects, materials: Objects, shapes: Objects, schema: Schema, where: Where) -> None:
     """Shapes have at their vertices what the textures of their materials read there. Raises SceneError."""
     types = schema.family("texture").types

@@ -31,8 +31,8 @@ struct Tagged {
 // What fills a closed body of a dielectric.
 struct InteriorRecord {
   SpectrumRef ior;
-  SpectrumRef color;  // share of the light that is left after 1 / per_depth
-  float per_depth;    // 1/m; 0: clear
+  SpectrumRef color;  // share of the light that is left after 1 / per_depth, or after each crossing of the surface
+  float per_depth;    // 1/m; 0: clear inside
   uint32_t priority;  // where bodies overlap the higher fills; 0: ior is relative to whatever is around
 };
 

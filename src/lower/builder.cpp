@@ -161,8 +161,9 @@ uint32_t SceneBuilder::add_material(std::string_view type, Values values, const 
 uint32_t SceneBuilder::add_interior(const Values& values) {
   if (!values.contains("priority")) return none;
   const bool coloured = values.contains("transmission_color");
-  if (coloured != values.contains("transmission_depth")) {
-    throw std::invalid_argument("transmission_color and transmission_depth go together: one is missing");
+  const bool deep = values.contains("transmission_depth");
+  if (deep && !coloured) {
+    throw BadParameter("transmission_depth", "is of no use without the colour that is left: add transmission_color");
   }
   InteriorRecord interior{std::get<SpectrumRef>(value_of(values, "ior")), {none}, 0.0f, 0};
   interior.priority = static_cast<uint32_t>(number_of(values, "priority"));
@@ -173,7 +174,7 @@ uint32_t SceneBuilder::add_interior(const Values& values) {
   }
   if (coloured) {
     interior.color = std::get<SpectrumRef>(value_of(values, "transmission_color"));
-    interior.per_depth = static_cast<float>(1.0 / number_of(values, "transmission_depth"));
+    interior.per_depth = deep ? static_cast<float>(1.0 / number_of(values, "transmission_depth")) : 0.0f;
   }
   interiors_.push_back(interior);
   return static_cast<uint32_t>(interiors_.size() - 1);

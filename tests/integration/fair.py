@@ -122,7 +122,9 @@ FAIR = {
     "furnace": Fair("as it is: its light comes from everywhere"),
     "glass-and-texture": Fair("the wall glows", partial(glowing, material="wall", radiance=1.0)),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
+    "mipmaps": Fair("as it is: its light comes from everywhere"),
     "openpbr": Fair("the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3.0)),
+    "panes": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "rough-metals": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "specularity": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "sphere-cavity": Fair("as it is: `reference` sums its point light plainly"),
@@ -136,6 +138,9 @@ FAIR = {
         "the lamp 2.5 times as wide and long, 1/6.25 as bright", partial(enlarged, lamp="lamp", factor=2.5)
     ),
     "textured-light": Fair("the sky 20 times as bright", partial(brightened, light="night", factor=20)),
+    "vertex-colours": Fair(
+        "the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)
+    ),
     "zoo": Fair("as it is: its lamps are large"),
 }
 

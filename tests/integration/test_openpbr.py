@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("accuray._core", reason="the compiled module is not built")
 import accuray
-from accuray.scene.openpbr import dispersed, weighted_ior
+from accuray.scene.openpbr import dispersed, kept_inside, weighted_ior
 
 Table = dict[str, Any]
 SKY = {"sky": {"type": "constant", "radiance": 1}}
@@ -49,9 +49,17 @@ def radiance(of: accuray.Scene, spp: int = 1024) -> tuple[float, float]:
         ({"transmission_weight": 1, "thin_film_weight": 1, "thin_film_thickness": "0.3 um"},
          {"type": "dielectric", "film_thickness": "300 nm", "film_ior": 1.4}, {}),
         ({"transmission_weight": 1, "geometry_thin_walled": True}, {"type": "thin_dielectric"}, {}),
-        ({"base_color": RED, "coat_weight": 1, "coat_roughness": 0.3, "coat_color": 0.25},
-         {"type": "coated", "base": "b", "roughness": 0.3, "ior": 1.6, "transmission_color": 0.5},
-         {"b": {"type": "diffuse", "reflectance": RED}}),
+        ({"base_color": RED, "coat_weight": 1, "coat_roughness": 0.3, "coat_color": 0.25, "specular_roughness": 0.6},
+         {"type": "coated", "base": "g", "roughness": 0.3, "ior": 1.6, "transmission_color": 0.5},
+         {"b": {"type": "diffuse", "reflectance": RED}, "g": {"type": "coated", "base": "b", "roughness": 0.6}}),
+        ({"base_color": RED, "coat_weight": 1, "specular_weight": 0},
+         {"type": "coated", "base": "b", "ior": 1.6}, {"b": {"type": "diffuse", "reflectance": RED}}),
+        ({"base_metalness": 1, "base_color": RED, "thin_film_weight": 1, "thin_film_thickness": 200},
+         {"type": "conductor", "reflectance": RED, "film_thickness": 200, "film_ior": 1.4}, {}),
+        ({"transmission_weight": 1, "transmission_color": RED}, {"type": "dielectric", "transmission_color": RED}, {}),
+        ({"transmission_weight": 1, "geometry_thin_walled": True, "specular_roughness": 0.4, "transmission_color": RED},
+         {"type": "coated", "base": "b", "roughness": 0.4, "transmission_color": RED},
+         {"b": {"type": "thin_dielectric"}}),
         ({"base_metalness": 1, "coat_weight": 1, "base_color": RED},
          {"type": "coated", "base": "b", "ior": 1.6}, {"b": {"type": "conductor", "reflectance": RED}}),
     ],
@@ -69,8 +77,11 @@ WHITE = {"base_color": 1.0, "specular_color": 1.0}
     [
         {},
         {"coat_weight": 0.5, "base_metalness": 0.5, "transmission_weight": 0.5},
-        {"coat_weight": 1.0, "coat_roughness": 0.6, "specular_roughness": 0.7, "specular_roughness_anisotropy": 0.6},
+        {"coat_weight": 1.0, "coat_roughness": 0.6, "specular_roughness": 0.7},
         {"fuzz_weight": 0.7, "fuzz_roughness": 0.8, "base_metalness": 0.5},
+        {"coat_weight": 1.0, "coat_ior": 1.3, "specular_ior": 2.0, "specular_roughness": 0.4, "coat_darkening": 0.4},
+        {"transmission_weight": 1.0, "geometry_thin_walled": True, "specular_roughness": 0.6, "coat_weight": 0.5},
+        {"base_metalness": 0.5, "thin_film_weight": 1.0},
         {"specular_weight": 0.3, "base_diffuse_roughness": 1.0, "transmission_weight": 0.3, "thin_film_weight": 0.5},
     ],
 )
@@ -115,6 +126,35 @@ def test_the_colour_of_a_coat_is_that_of_the_way_in_and_out() -> None:
     assert float(result.mean[0, 0]) == pytest.approx(0.3, rel=1e-5)
 
 
+def matte_albedo(**more: Any) -> float:
+    """Share of even light that a flat grey surface under a smooth coat sends back, less what its interfaces mirror."""
+    plate = {"type": "rectangle", "material": "m", "corner": [-1, -1, 0], "edge_u": [2, 0, 0], "edge_v": [0, 2, 0]}
+    total = 0.0
+    for colour, sign in ((0.5, 1.0), (0.0, -1.0)):
+        material = {**PBR, "base_color": colour, **more}
+        described = {"materials": {"m": material}, "shapes": {"plate": plate}, "lights": SKY}
+        found = accuray.radiance(
+            accuray.Scene.from_dict(described), [[0, 0, 2]], [[0, 0, -1]], 16384, wavelengths=[550.0]
+        )
+        total += sign * float(found.mean[0, 0])
+    return total
+
+
+def test_darkening_is_that_of_the_coat_or_none() -> None:
+    """Without darkening the base shows as if the coat sent nothing back: its albedo without the coat, dimmed by what
+    the coat mirrors on the way in. Nature's darkening is the closed form; between them it is a share.
+    """
+    bare = matte_albedo(specular_weight=0)
+    coat: Table = {"specular_weight": 0, "coat_weight": 1, "coat_ior": 1.6}
+    nature, half, none = (matte_albedo(**coat, coat_darkening=d) for d in (1.0, 0.5, 0.0))
+    into = 1.0 - ((1.6 - 1.0) / (1.6 + 1.0)) ** 2
+    inside = kept_inside(1.0, 1.6)
+    assert bare == pytest.approx(0.5, rel=1e-3)
+    assert nature == pytest.approx(into * 0.5 * (1.0 - inside) / (1.0 - 0.5 * inside), rel=0.02)
+    assert none == pytest.approx(into * 0.5, rel=0.02)
+    assert half == pytest.approx(0.5 * (nature + none), rel=0.02)
+
+
 def test_the_emission_has_its_luminance() -> None:
     dark = {**PBR, "base_weight": 0.0, "specular_weight": 0.0}
     lamp = scene({**dark, "emission_luminance": 250.0, "emission_color": [1, 1, 1]}, {})
@@ -126,15 +166,16 @@ def test_the_emission_has_its_luminance() -> None:
     ("openpbr", "key", "text"),
     [
         ({"specular_color": [1, 0.5, 0.5]}, "specular_color", "dielectric"),
-        ({"base_metalness": 0.5, "thin_film_weight": 1}, "thin_film_weight", "base_metalness = 0"),
-        ({"transmission_weight": 1, "transmission_color": RED}, "transmission_color", "transmission_depth above 0"),
+        ({"coat_darkening": 1.5}, "coat_darkening", "0 to 1"),
+        ({"coat_darkening": 0.5, "base_color": {"texture": "t"}}, "coat_darkening", "no texture"),
         ({"emission": 1.0, "emission_luminance": 5.0}, "emission_luminance", "one of them"),
         ({"subsurface_weight": 1.0}, "subsurface_weight", "not a known parameter of openpbr"),
     ],
 )
 def test_what_cannot_be_said(openpbr: Table, key: str, text: str) -> None:
+    grey = {"t": {"type": "image", "pixels": np.full((1, 1, 3), 0.5, dtype=np.float32)}}
     with pytest.raises(accuray.SceneError) as caught:
-        scene({**PBR, **openpbr})
+        scene({**PBR, **openpbr}, textures=grey)
     assert caught.value.key == f"materials.m.{key}"
     assert text in str(caught.value)
 

@@ -145,10 +145,50 @@ def test_nested_bodies_keep_a_white_furnace() -> None:
     assert luminance.mean() == pytest.approx(1.0, rel=0.01)
 
 
-@pytest.mark.parametrize("missing", ["transmission_color", "transmission_depth"])
-def test_half_a_colour_is_refused(missing: str) -> None:
+def test_a_depth_without_a_colour_is_refused() -> None:
     material = body(color=0.5)
-    del material[missing]
+    del material["transmission_color"]
     scene = accuray.Scene.from_dict({"accuray": 1, "materials": {"m": material}, "shapes": {"b": ball("m")}})
-    with pytest.raises(accuray.SceneError, match="go together"):
+    with pytest.raises(accuray.SceneError, match=r"transmission_depth: .*add transmission_color"):
         accuray.render(scene, spp=4)
+
+
+def tinted(**more: Any) -> dict[str, Any]:
+    return {"type": "dielectric", "transmission_color": 0.5, **more}
+
+
+def test_a_colour_without_a_depth_tints_each_crossing() -> None:
+    """A ball without refraction is crossed twice, however large it is; a slab as well, all reflections between."""
+    for radius in (0.1, 2.0):
+        scene = accuray.Scene.from_dict(
+            {"materials": {"m": tinted(ior=1.0)}, "shapes": {"b": ball("m", radius)}, "lights": SKY}
+        )
+        found = accuray.radiance(scene, [[0, 0, 5]], [[0, 0, -1]], 64, wavelengths=[550.0])
+        assert float(found.mean[0, 0]) == pytest.approx(0.25, rel=1e-5)
+
+
+@pytest.mark.parametrize("strategy", ["light", "bsdf"])
+def test_frosted_tinted_glass_by_every_strategy(strategy: str) -> None:
+    """Light that is chosen through the surface has the tint of light that finds its own way."""
+
+    def seen(kind: str, color: float) -> tuple[float, float]:
+        glass = tinted(ior=1.3, roughness=0.8, transmission_color=color)
+        lamp = {"type": "diffuse", "reflectance": 0, "emission": 1, "emission_sides": "both"}
+        scene = accuray.Scene.from_dict(
+            {
+                "integrator": {"type": "path", "strategy": kind},
+                "materials": {"m": glass, "lamp": lamp},
+                "shapes": {
+                    "b": {"type": "sphere", "material": "m"},
+                    "l": {"type": "disk", "center": [0, 0, -2], "radius": 1, "material": "lamp"},
+                },
+            }
+        )
+        found = accuray.radiance(scene, [[0.2, 0.1, 5]] * 16, [[0, 0, -1]] * 16, 1024, wavelengths=[550.0])
+        return float(found.mean[:, 0].mean()), float(found.mean[:, 0].std(ddof=1)) / 4.0
+
+    mean, error = seen(strategy, 0.5)
+    truth, its_error = seen("mis", 0.5)
+    assert error < 0.05 * truth, "no power"
+    assert abs(mean - truth) < 4.5 * (error**2 + its_error**2) ** 0.5
+    assert truth < 0.5 * seen("mis", 1.0)[0]

@@ -188,7 +188,17 @@ def test_a_texture_gives_the_thickness() -> None:
     assert np.array_equal(a, c)
 
 
-def test_a_colour_has_no_film() -> None:
-    with pytest.raises(accuray.SceneError, match=r"materials.m.film_thickness: cannot go with `reflectance`"):
-        load({"materials": {"m": {"type": "conductor", "reflectance": 0.5, "film_thickness": 100}}})
-    load({"materials": {"m": {"type": "conductor", "reflectance": 0.5, "film_thickness": 0}}})
+@pytest.mark.parametrize("tint", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("colour", [0.05, 0.6, 0.98])
+def test_a_metal_given_by_its_colour_keeps_it_under_a_film(colour: float, tint: float) -> None:
+    """A film of index 1 is none: along the normal the index that was found reflects the colour itself, and towards the
+    edge the less the darker the tint is. A film of another index changes the colour.
+    """
+    metal = {"type": "conductor", "reflectance": colour, "edge_tint": tint}
+    bare, clear, oil = bsdfs([metal, metal | {"film_thickness": 80, "film_ior": 1.0}, metal | {"film_thickness": 80}])
+    u, normal = np.full((1, 3), 0.5), np.array([[0.0, 0.0, 1.0]])
+    assert clear.sample(normal, u).weight[0] == pytest.approx(bare.sample(normal, u).weight[0], rel=1e-3)
+    assert np.abs(oil.sample(normal, u).weight - bare.sample(normal, u).weight).max() > 1e-3
+    edge = np.array([[np.sqrt(1.0 - 0.15**2), 0.0, 0.15]])
+    darker = bsdfs([metal | {"film_thickness": 80, "film_ior": 1.0, "edge_tint": 0.0}])[0]
+    assert (darker.sample(edge, u).weight <= clear.sample(edge, u).weight + 1e-6).all()

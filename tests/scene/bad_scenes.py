@@ -196,11 +196,22 @@ COATS = [
         'did you mean "paint"',
     ),
     scene(
-        "coat-on-a-coat",
-        PAINT + '[materials.m]\ntype = "coated"\nbase = "paint"\n[materials.n]\ntype = "coated"\nbase = "m"\n',
-        "scene.toml:9: materials.n.base",
-        '"m" is coated, which is made of others itself',
-        "one layer",
+        "coat-on-coated-metal",
+        '[materials.k]\ntype = "conductor"\nmetal = "Ag"\n[materials.m]\ntype = "coated"\nbase = "k"\n'
+        '[materials.n]\ntype = "coated"\nbase = "m"\n',
+        "scene.toml:10: materials.n.base",
+        '"m" is coated over conductor, which is made of others itself',
+        "a coated one whose base is diffuse",
+    ),
+    scene(
+        "three-coats",
+        PAINT
+        + "".join(
+            f'[materials.{b}]\ntype = "coated"\nbase = "{a}"\n' for a, b in (("paint", "m"), ("m", "n"), ("n", "o"))
+        ),
+        "materials.o.base",
+        '"n" is coated over coated',
+        "a coated one whose base is diffuse",
     ),
     scene(
         "coat-on-itself",

@@ -64,6 +64,10 @@ struct BaseAt {
       values.template set<Bsdf>(p.scene.as<Bsdf>(base).at(p));
     });
   }
+  void set(const DielectricAt& interface) {
+    tag = tag_of<Dielectric>(Bases{});
+    values.set<Dielectric>(interface);
+  }
   // Calls fn with the values as what they are.
   template <class Fn>
   ACCURAY_INLINE auto visit(Fn&& fn) const {

@@ -12,10 +12,12 @@
 //   - sample(wo, u_lobe, u) returns weight = f |cos(theta_i)| / pdf, or the whole weight of a delta lobe. A failed
 //     sample has weight 0.
 //   - Transmitted radiance is scaled by (eta_o / eta_i)^2, eta_o being the index on the side of wo.
-//   - XAt::is_delta() says that all lobes are, XAt::lobe what the others are. A BSDF whose density depends on which
-//     wavelength is the hero has pdfs(wo, wi) besides: the density by lane, if each were the hero.
+//   - XAt::is_delta() says that all lobes are, XAt::lobe what the others are. A BSDF that finds value and density
+//     together has lobes(wo, wi) besides, which gives both; its density is by lane where it depends on which
+//     wavelength is the hero.
 #pragma once
 
+#include "kernels/bsdf/surface_params.h"
 #include "kernels/geometry/texture_point.h"
 #include "kernels/schema.h"
 #include "kernels/texture/list.h"
@@ -59,6 +61,12 @@ struct BsdfSample {
   float pdf;  // 0 for delta lobes
   uint32_t lobe;
   float eta_scale;  // (eta_i / eta_o)^2 of a refraction, else 1: takes radiance scaling out of the roulette
+};
+
+// Value and density in one direction.
+struct BsdfLobes {
+  Spectrum value;
+  Spectrum pdf;  // if each lane were the hero
 };
 
 // Chance with which something that has another share in each lane is chosen for all of them: the mean while they go

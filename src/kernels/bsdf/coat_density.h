@@ -63,6 +63,10 @@ struct CoatDensity {
     const float glossy = base.spread < 1.0f ? facets_density(wo, wi, same) : 0.0f;
     return fma(rest, fma(base.spread, cosine_hemisphere_pdf(abs(wi.z)) - glossy, glossy), result);
   }
+  // Share of the light from above that gets through to what is behind the base.
+  float passed(float cosine) const {
+    return (1.0f - reflected(cosine, index)) * (1.0f - reflected(cosine, base.behind));
+  }
 
  private:
   // What a smooth interface would reflect, kept off 0 and 1.

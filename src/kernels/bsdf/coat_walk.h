@@ -16,6 +16,23 @@
 
 namespace accuray {
 
+// What crossing a layer straight leaves of the light.
+struct LayerShare {
+  Spectrum share;
+  bool clear;
+
+  static bool is_clear(Spectrum share) { return min(min(share[0], share[1]), min(share[2], share[3])) >= 1.0f; }
+  // In a direction of this cosine.
+  Spectrum left(float cosine) const {
+    if (clear) return lanes(1.0f);
+    Spectrum result = share;
+    for (int k = 0; k < 4; ++k) {
+      result[k] = static_cast<float>(pow(static_cast<double>(share[k]), 1.0 / static_cast<double>(cosine)));
+    }
+    return result;
+  }
+};
+
 struct CoatLayer {
   DielectricAt top;  // from what is before the surface into the layer
   Spectrum share;    // of the light that is left after crossing the layer straight
@@ -23,8 +40,13 @@ struct CoatLayer {
   [[no_unique_address]] BaseAt base;
   bool clear;
   bool hero_only;
+  bool twice;        // the base is the surface of a second layer, upon a matte surface (recoated.h)
+  bool lower_clear;  // as `clear`, of the second layer
   uint32_t seed;
   uint32_t lobe;
+  float matte_roughness;
+  Spectrum matte_reflectance;
+  Spectrum lower_share;
 
   bool is_delta(bool at_top) const { return at_top ? top.is_delta() : base.is_delta(); }
 
@@ -40,15 +62,7 @@ struct CoatLayer {
       }
     });
   }
-  // Share that one crossing leaves, in a direction of this cosine.
-  Spectrum left(float cosine) const {
-    if (clear) return lanes(1.0f);
-    Spectrum result = share;
-    for (int k = 0; k < 4; ++k) {
-      result[k] = static_cast<float>(pow(static_cast<double>(share[k]), 1.0 / static_cast<double>(cosine)));
-    }
-    return result;
-  }
+  Spectrum left(float cosine) const { return LayerShare{share, clear}.left(cosine); }
 };
 
 // A sample of one of the interfaces.
@@ -56,18 +70,14 @@ ACCURAY_NOINLINE inline BsdfSample coat_event(const CoatLayer& layer, bool at_to
   return layer.visit(at_top, [&](const auto& at) { return at.sample(wo, u.z, {u.x, u.y}); });
 }
 
-struct CoatLobes {
-  Spectrum value;
-  Spectrum pdf;  // if each lane were the hero
-};
-
 // Value and density of one of the interfaces.
-ACCURAY_NOINLINE inline CoatLobes coat_lobes(const CoatLayer& layer, bool at_top, Vec3 wo, Vec3 wi) {
+ACCURAY_NOINLINE inline BsdfLobes coat_lobes(const CoatLayer& layer, bool at_top, Vec3 wo, Vec3 wi) {
   return layer.visit(at_top, [&](const auto& at) {
-    if constexpr (requires { at.pdfs(wo, wi); }) {
-      return CoatLobes{at.eval(wo, wi), at.pdfs(wo, wi)};
+    if constexpr (requires { at.lobes(wo, wi); }) {
+      const auto both = at.lobes(wo, wi);
+      return BsdfLobes{both.value, lanes(1.0f) * both.pdf};
     } else {
-      return CoatLobes{at.eval(wo, wi), lanes(at.pdf(wo, wi))};
+      return BsdfLobes{at.eval(wo, wi), lanes(at.pdf(wo, wi))};
     }
   });
 }
@@ -85,7 +95,12 @@ struct CoatNumbers {
   }
 };
 
-enum class CoatStream : uint32_t { sample = 0x636f6174u, eval = 0x65766f63u };
+enum class CoatStream : uint32_t {
+  sample = 0x636f6174u,
+  eval = 0x65766f63u,
+  below_sample = 0x62656c73u,
+  below_eval = 0x62656c65u
+};
 
 // Ends walks that carry little, and makes sure that all of them end.
 constexpr uint32_t coat_roulette_event = 8;
@@ -111,10 +126,10 @@ inline BsdfSample coat_entry(const CoatLayer& layer, bool at_top, Vec3 w, Vec3 u
   return s;
 }
 
-// The walk itself. The first numbers are given; a mirror leaves two of them to the event that follows.
-ACCURAY_NOINLINE inline BsdfSample coat_sample(const CoatLayer& layer, Vec3 wo, float u_lobe, Vec2 u) {
-  CoatNumbers numbers{hash(layer.seed, static_cast<uint32_t>(CoatStream::sample))};
-  Vec3 u_event = {u.x, u.y, u_lobe};
+// The walk itself, until it leaves both interfaces. The numbers of its first event are given; a mirror leaves two of
+// them to the one that follows.
+ACCURAY_INLINE BsdfSample coat_walk(const CoatLayer& layer, Vec3 wo, Vec3 u, CoatNumbers& numbers) {
+  Vec3 u_event = u;
   BsdfSample result = {wo, lanes(1.0f), 0.0f, lobe_specular, 1.0f};
   Vec3 w = wo;
   bool at_top = wo.z > 0.0f;
@@ -135,6 +150,11 @@ ACCURAY_NOINLINE inline BsdfSample coat_sample(const CoatLayer& layer, Vec3 wo, 
     at_top = !at_top;
     u_event = event == 0 && (s.lobe & lobe_specular) != 0 ? Vec3{u.x, u.y, numbers.one()} : numbers.three();
   }
+}
+
+ACCURAY_NOINLINE inline BsdfSample coat_sample(const CoatLayer& layer, Vec3 wo, float u_lobe, Vec2 u) {
+  CoatNumbers numbers{hash(layer.seed, static_cast<uint32_t>(CoatStream::sample))};
+  return coat_walk(layer, wo, {u.x, u.y, u_lobe}, numbers);
 }
 
 // Share of the first of two techniques by the power heuristic, by lane.
@@ -162,7 +182,7 @@ ACCURAY_NOINLINE inline Spectrum coat_eval(const CoatLayer& layer, Vec3 wo, Vec3
     // Here the walk may scatter towards the light, along wi or along the way in.
     const bool last = at_top == exit_top;
     if (!layer.is_delta(at_top) && (last || found_in)) {
-      const CoatLobes here = coat_lobes(layer, at_top, w, last ? wi : -in.wi);
+      const BsdfLobes here = coat_lobes(layer, at_top, w, last ? wi : -in.wi);
       Spectrum scattered = weight * here.value;
       if (last) {
         if (pdf > 0.0f) scattered *= share_of(pdf, coat_lobes(layer, at_top, wi, w).pdf);

@@ -7,26 +7,31 @@
 
 #include "kernels/bsdf/coat_density.h"
 #include "kernels/bsdf/coat_walk.h"
+#include "kernels/bsdf/recoated.h"
 
 namespace accuray {
 
 struct CoatedAt : CoatLayer {
-  bool is_delta() const { return top.is_delta() && base.is_delta(); }
+  bool is_delta() const { return upper_is_delta() && !twice; }
 
   Spectrum eval(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f) return lanes(0.0f);
     if (is_bare(wo)) return coat_lobes(*this, false, wo, wi).value;
-    if ((wo.z > 0.0f) != (wi.z > 0.0f) && !base.transmits()) return lanes(0.0f);
+    if (is_blocked(wo, wi)) return lanes(0.0f);
+    if (twice) [[unlikely]]
+      return wo.z < 0.0f || upper_is_delta() ? below_eval(*this, wo, wi)
+                                             : below_eval(*this, wo, wi) + coat_eval(*this, wo, wi);
     return coat_eval(*this, wo, wi);
   }
   float pdf(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f || is_delta()) return 0.0f;
-    return is_bare(wo) ? coat_lobes(*this, false, wo, wi).pdf[0] : coat_pdf(*this, wo, wi);
+    if (is_bare(wo)) return coat_lobes(*this, false, wo, wi).pdf[0];
+    return twice ? pdf_twice(wo, wi) : coat_pdf(*this, wo, wi);
   }
   BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
     if (wo.z == 0.0f) return no_sample();
     if (is_bare(wo)) return coat_event(*this, false, wo, {u.x, u.y, u_lobe});
-    BsdfSample s = coat_sample(*this, wo, u_lobe, u);
+    BsdfSample s = twice ? below_sample(*this, wo, u_lobe, u) : coat_sample(*this, wo, u_lobe, u);
     if (is_black(s.weight)) return s;
     const bool crosses = (s.wi.z > 0.0f) != (wo.z > 0.0f);
     if (crosses) {
@@ -36,14 +41,20 @@ struct CoatedAt : CoatLayer {
     }
     if ((s.lobe & lobe_specular) == 0) {
       s.lobe |= lobe;
-      s.pdf = coat_pdf(*this, wo, s.wi);
+      s.pdf = twice ? pdf_twice(wo, s.wi) : coat_pdf(*this, wo, s.wi);
     }
     return s;
   }
 
  private:
+  bool upper_is_delta() const { return top.is_delta() && base.is_delta(); }
   // The back of an opaque base has no layer before it.
   bool is_bare(Vec3 wo) const { return wo.z < 0.0f && !base.transmits(); }
+  bool is_blocked(Vec3 wo, Vec3 wi) const { return (wo.z > 0.0f) != (wi.z > 0.0f) && (twice || !base.transmits()); }
+  float pdf_twice(Vec3 wo, Vec3 wi) const {
+    if (is_blocked(wo, wi)) return 0.0f;
+    return below_pdf(*this, wo, wi, wo.z < 0.0f || upper_is_delta() ? 0.0f : coat_pdf(*this, wo, wi));
+  }
 };
 
 struct Coated {
@@ -52,6 +63,7 @@ struct Coated {
   SpectrumRef transmission_color;
   InterfaceParameters interface;
 
+  static constexpr uint32_t tag = Bases::size;  // it follows them in the list
   static constexpr const char* name = "coated";
   static constexpr const char* doc =
       "A thin layer of varnish, lacquer or water on the front of another material, with all reflections between its "
@@ -62,9 +74,8 @@ struct Coated {
         param_list(
             Param{.name = "base",
                   .kind = Kind::reference,
-                  .doc =
-                      "Material under the layer: not coated itself, and without emission, opacity, normal or bump map, "
-                      "which belong to the coat.",
+                  .doc = "Material under the layer, without emission, opacity, normal or bump map, which belong to the "
+                         "coat. It may be a coated diffuse one.",
                   .role = "material",
                   .required = true,
                   .member = ACCURAY_OFFSET_OF(Coated, base)},
@@ -80,19 +91,11 @@ struct Coated {
                   .texturable = true,
                   .animatable = true,
                   .member = ACCURAY_OFFSET_OF(Coated, ior)},
-            Param{.name = "transmission_color",
-                  .kind = Kind::spectrum,
-                  .doc =
-                      "Share of the light that is left after crossing the layer straight; of slanted ways, which are "
-                      "longer, less is left.",
-                  .preset = "1",
-                  .low = 0,
-                  .high = 1,
-                  .unit = "1",
-                  .role = "reflectance",
-                  .texturable = true,
-                  .animatable = true,
-                  .member = ACCURAY_OFFSET_OF(Coated, transmission_color)}),
+            reflectance_param(
+                "transmission_color",
+                "Share of the light that is left after crossing the layer straight; of slanted ways, which are "
+                "longer, less is left.",
+                "1", ACCURAY_OFFSET_OF(Coated, transmission_color))),
         InterfaceParameters::params(ACCURAY_OFFSET_OF(Coated, interface)));
   }
   bool oriented() const { return interface.oriented(); }
@@ -102,15 +105,31 @@ struct Coated {
     const Spectrum share = p.spectrum(transmission_color);
     CoatedAt at;
     at.top = interface.at(p, index / p.exterior);
-    // The layer lies before the base, but not before the back of an opaque one.
-    if (!p.behind || base_transmits(base.tag)) p.exterior = index;
-    at.base.set(base, p);
     at.share = share;
-    at.clear = min(min(share[0], share[1]), min(share[2], share[3])) >= 1.0f;
+    at.clear = LayerShare::is_clear(share);
     at.hero_only = p.wl.hero_only;
     at.seed = p.seed;
-    at.lobe = (at.base.lobe() & lobe_diffuse) != 0 ? lobe_diffuse : lobe_glossy;
+    at.twice = base.tag == tag;
+    // The layer lies before the base, but not before the back of an opaque one.
+    if (!p.behind || base_transmits(base.tag)) p.exterior = index;
+    if (at.twice) [[unlikely]] {
+      set_below(p, index, at);
+    } else {
+      at.base.set(base, p);
+    }
+    at.lobe = at.twice || (at.base.lobe() & lobe_diffuse) != 0 ? lobe_diffuse : lobe_glossy;
     return at;
+  }
+
+ private:
+  ACCURAY_NOINLINE void set_below(const ShadingPoint& p, Spectrum index, CoatedAt& at) const {
+    const Coated& under = p.scene.as<Coated>(base);
+    at.base.set(under.interface.at(p, lanes(p.real(under.ior)) / index));
+    at.lower_share = p.spectrum(under.transmission_color);
+    at.lower_clear = LayerShare::is_clear(at.lower_share);
+    const DiffuseAt matte = p.scene.as<Diffuse>(under.base).at(p);
+    at.matte_reflectance = matte.reflectance;
+    at.matte_roughness = matte.roughness;
   }
 };
 

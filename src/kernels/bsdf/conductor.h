@@ -20,8 +20,14 @@ struct ConductorAt {
   static constexpr uint32_t lobe = lobe_glossy;
   bool is_delta() const { return facets.is_smooth(); }
 
-  Spectrum eval(Vec3 wo, Vec3 wi) const { return is_delta() ? lanes(0.0f) : lobes(wo, wi).value; }
-  float pdf(Vec3 wo, Vec3 wi) const { return is_delta() ? 0.0f : lobes(wo, wi).pdf; }
+  struct Lobes {
+    Spectrum value;
+    float pdf;
+  };
+
+  Lobes lobes(Vec3 wo, Vec3 wi) const { return is_delta() ? Lobes{lanes(0.0f), 0.0f} : facet_lobes(wo, wi); }
+  Spectrum eval(Vec3 wo, Vec3 wi) const { return lobes(wo, wi).value; }
+  float pdf(Vec3 wo, Vec3 wi) const { return lobes(wo, wi).pdf; }
 
   BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
     if (wo.z == 0.0f) return no_sample();
@@ -36,18 +42,13 @@ struct ConductorAt {
     }
     if (wi.z <= 0.0f) return no_sample();
     if (wo.z < 0.0f) wi.z = -wi.z;
-    const Lobes both = lobes(wo, wi);
+    const Lobes both = facet_lobes(wo, wi);
     return {wi, both.value / both.pdf, both.pdf, lobe_glossy, 1.0f};
   }
 
  private:
-  struct Lobes {
-    Spectrum value;
-    float pdf;
-  };
-
   // Value and density of the facets' lobe and the one of what they lose; not inlined, like that of interfaces.
-  ACCURAY_NOINLINE Lobes lobes(Vec3 wo, Vec3 wi) const {
+  ACCURAY_NOINLINE Lobes facet_lobes(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f || (wo.z > 0.0f) != (wi.z > 0.0f)) return {lanes(0.0f), 0.0f};
     const Vec3 half = wo + wi;
     const float cos_o = abs(wo.z);
@@ -98,15 +99,20 @@ struct Conductor {
   }
   bool oriented() const { return is_stretched(anisotropy); }
   ConductorAt at(const ShadingPoint& p) const {
+    const FilmAt film = FilmAt::of(p, film_thickness, film_ior);
     const MetalAt metal = reflectance.index == none
-                              ? MetalAt::of_index(p.spectrum(eta) / p.exterior, p.spectrum(k) / p.exterior,
-                                                  FilmAt::of(p, film_thickness, film_ior))
-                              : MetalAt::of_colours(p.spectrum(reflectance), p.spectrum(edge_tint));
+                              ? MetalAt::of_index(p.spectrum(eta) / p.exterior, p.spectrum(k) / p.exterior, film)
+                              : coloured(p.spectrum(reflectance), p.spectrum(edge_tint), film);
     const FacetsAt at = FacetsAt::of(p, roughness, anisotropy, compensate);
     return {metal, at.facets, {at.place, separable != 0}};
   }
 
  private:
+  static MetalAt coloured(Spectrum reflectance, Spectrum tint, const FilmAt& film) {
+    if (film.exists()) [[unlikely]]
+      return MetalAt::of_filmed_colours(reflectance, tint, film);
+    return MetalAt::of_colours(reflectance, tint);
+  }
   // What is reflected along the normal and beside it.
   static constexpr ParamList<5> reflectance_params() {
     return param_list(
@@ -135,29 +141,14 @@ struct Conductor {
               .texturable = true,
               .animatable = true,
               .member = ACCURAY_OFFSET_OF(Conductor, k)},
-        Param{.name = "reflectance",
-              .kind = Kind::spectrum,
-              .doc = "Reflectance along the normal, in place of an index.",
-              .low = 0,
-              .high = 1,
-              .unit = "1",
-              .role = "reflectance",
-              .group = "index:reflectance",
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Conductor, reflectance)},
-        Param{.name = "edge_tint",
-              .kind = Kind::spectrum,
-              .doc = "With reflectance: what the reflectance at 82 degrees is multiplied with, towards the edge.",
-              .preset = "1",
-              .low = 0,
-              .high = 1,
-              .unit = "1",
-              .role = "reflectance",
-              .group = "index:reflectance",
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Conductor, edge_tint)});
+        in_group(reflectance_param("reflectance", "Reflectance along the normal, in place of an index.", "",
+                                   ACCURAY_OFFSET_OF(Conductor, reflectance)),
+                 "index:reflectance"),
+        in_group(reflectance_param(
+                     "edge_tint",
+                     "With reflectance: what the reflectance at 82 degrees is multiplied with, towards the edge.", "1",
+                     ACCURAY_OFFSET_OF(Conductor, edge_tint)),
+                 "index:reflectance"));
   }
 };
 

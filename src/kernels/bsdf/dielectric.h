@@ -17,10 +17,11 @@ struct DielectricAt {
   // Facets of an interface that hardly refracts change nothing, and their half vectors are lost in rounding.
   bool is_delta() const { return rough.facets.is_smooth() || abs(rough.ior[0] - 1.0f) < smallest_step; }
 
-  Spectrum eval(Vec3 wo, Vec3 wi) const { return is_delta() ? lanes(0.0f) : rough.lobes(wo, wi).value; }
-  float pdf(Vec3 wo, Vec3 wi) const { return pdfs(wo, wi)[0]; }
-  // By lane, if each were the hero.
-  Spectrum pdfs(Vec3 wo, Vec3 wi) const { return is_delta() ? lanes(0.0f) : rough.lobes(wo, wi).pdf; }
+  BsdfLobes lobes(Vec3 wo, Vec3 wi) const {
+    return is_delta() ? BsdfLobes{lanes(0.0f), lanes(0.0f)} : rough.lobes(wo, wi);
+  }
+  Spectrum eval(Vec3 wo, Vec3 wi) const { return lobes(wo, wi).value; }
+  float pdf(Vec3 wo, Vec3 wi) const { return lobes(wo, wi).pdf[0]; }
 
   BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
     if (wo.z == 0.0f) return no_sample();
@@ -88,23 +89,16 @@ struct Dielectric {
   static constexpr auto params() {
     return joined(
         param_list(
-            Param{.name = "ior",
-                  .kind = Kind::spectrum,
-                  .doc = "Index behind the surface relative to the index before it, or absolute if there is a "
-                         "priority: a number, a named glass (N-BK7, SF11, water_20C, diamond, ...), Sellmeier or "
-                         "Cauchy coefficients, or a table.",
-                  .preset = "1.5",
-                  .low = 0.05,
-                  .high = 20,
-                  .unit = "1",
-                  .role = "index",
-                  .texturable = true,
-                  .animatable = true,
-                  .member = ACCURAY_OFFSET_OF(Dielectric, ior)},
+            index_param("ior",
+                        "Index behind the surface relative to the index before it, or absolute if there is a "
+                        "priority: a number, a named glass (N-BK7, SF11, water_20C, diamond, ...), Sellmeier or "
+                        "Cauchy coefficients, or a table.",
+                        "1.5", ACCURAY_OFFSET_OF(Dielectric, ior)),
             Param{.name = "transmission_color",
                   .kind = Kind::spectrum,
                   .doc =
-                      "Share of the light that is left after transmission_depth inside the body, which must be closed.",
+                      "Share of the light that is left after transmission_depth inside the body, which must be closed; "
+                      "without a depth after each crossing of the surface.",
                   .low = 0,
                   .high = 1,
                   .unit = "1",

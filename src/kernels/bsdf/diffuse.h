@@ -80,26 +80,11 @@ struct Diffuse {
   static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
     return param_list(
-        Param{.name = "reflectance",
-              .kind = Kind::spectrum,
-              .doc = "Share of the light that is reflected.",
-              .preset = "0.5",
-              .low = 0,
-              .high = 1,
-              .unit = "1",
-              .role = "reflectance",
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Diffuse, reflectance)},
-        Param{.name = "roughness",
-              .kind = Kind::real,
-              .doc = "0 is Lambert's law; 1, like the moon or dry clay, is flatter and brighter at the edge.",
-              .preset = "0",
-              .low = 0,
-              .high = 1,
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Diffuse, roughness)});
+        reflectance_param("reflectance", "Share of the light that is reflected.", "0.5",
+                          ACCURAY_OFFSET_OF(Diffuse, reflectance)),
+        share_param("roughness",
+                    "0 is Lambert's law; 1, like the moon or dry clay, is flatter and brighter at the edge.", "0",
+                    ACCURAY_OFFSET_OF(Diffuse, roughness)));
   }
   DiffuseAt at(const ShadingPoint& p) const { return {p.spectrum(reflectance), p.real(roughness)}; }
 };

@@ -14,6 +14,7 @@ namespace accuray {
 
 using Bsdfs = TypeList<Diffuse, Conductor, Dielectric, ThinDielectric, Sheen, Coated>;
 static_assert(starts_with(Bsdfs{}, Bases{}), "a base has the same tag in both lists");
+static_assert(tag_of<Coated>(Bsdfs{}) == Coated::tag, "a coated base is known by its tag");
 
 // The header that every material has besides its BSDF.
 struct MaterialCommon {

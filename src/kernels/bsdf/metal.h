@@ -22,6 +22,19 @@ struct MetalAt {
     return {reflectance, at_82 * (1.0f - tint) * (1.0f / (c * rest * (1.0f - c))), true};
   }
 
+  // A film needs an index: the one that gives this reflectance along the normal, and towards the edge the curve of the
+  // most metallic index that does where the tint is 1, of the least metallic where it is 0 (Gulbrandsen 2014).
+  ACCURAY_NOINLINE static MetalAt of_filmed_colours(Spectrum reflectance, Spectrum tint, FilmAt film) {
+    const Spectrum r = min(reflectance, lanes(brightest));
+    const Spectrum root = sqrt(r);
+    const Spectrum least = (1.0f - r) / (1.0f + r);
+    const Spectrum most = (1.0f + root) / (1.0f - root);
+    const Spectrum n = most + tint * (least - most);
+    const Spectrum k2 = (r * (n + 1.0f) * (n + 1.0f) - (n - 1.0f) * (n - 1.0f)) / (1.0f - r);
+    return of_index(n, sqrt(max(k2, lanes(0.0f))), film);
+  }
+  static constexpr float brightest = 0.9999f;
+
   Spectrum reflectance(float cosine) const {
     if (film.exists()) [[unlikely]]
       return film_on_metal(film, a, b, cosine);

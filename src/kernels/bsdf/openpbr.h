@@ -62,30 +62,36 @@ struct OpenPbr {
   }
   static constexpr auto transmission() {
     using namespace openpbr;
-    return param_list(share("transmission_weight", "Share of the dielectric that is clear, not matte.", "0"),
-                      plain_colour("transmission_color", "What is left of the light after transmission_depth.", "1"),
-                      Param{.name = "transmission_depth",
-                            .doc = "Way inside the body after which transmission_color is left; 0: clear.",
-                            .preset = "0",
-                            .low = 0,
-                            .unit = "m"},
-                      plain_share("transmission_dispersion_scale", "Factor of the dispersion; 0: none.", "0"),
-                      Param{.name = "transmission_dispersion_abbe_number",
-                            .doc = "Abbe number of the dielectric at full dispersion.",
-                            .preset = "20",
-                            .low = 9,
-                            .high = 91});
+    return param_list(
+        share("transmission_weight", "Share of the dielectric that is clear, not matte.", "0"),
+        plain_colour("transmission_color",
+                     "What is left of the light after transmission_depth, or after each crossing of the surface.", "1"),
+        Param{.name = "transmission_depth",
+              .doc = "Way inside the body after which transmission_color is left; 0: clear.",
+              .preset = "0",
+              .low = 0,
+              .unit = "m"},
+        plain_share("transmission_dispersion_scale", "Factor of the dispersion; 0: none.", "0"),
+        Param{.name = "transmission_dispersion_abbe_number",
+              .doc = "Abbe number of the dielectric at full dispersion.",
+              .preset = "20",
+              .low = 9,
+              .high = 91});
   }
   static constexpr auto coat() {
     using namespace openpbr;
-    return param_list(share("coat_weight", "Share of the surface under a coat.", "0"),
-                      plain_colour("coat_color", "Share of the light left on the straight way in and out.", "1"),
-                      share("coat_roughness", "Roughness of the coat.", "0"),
-                      share("coat_roughness_anisotropy", "Stretches the coat's highlights.", "0"),
-                      index("coat_ior", "Index of refraction of the coat.", "1.6"),
-                      share("fuzz_weight", "Share of the surface under fibres.", "0"),
-                      colour("fuzz_color", "Reflectance of the fibres.", "1"),
-                      share("fuzz_roughness", "Roughness of the fibres.", "0.5"));
+    return param_list(
+        share("coat_weight", "Share of the surface under a coat.", "0"),
+        plain_colour("coat_color", "Share of the light left on the straight way in and out.", "1"),
+        share("coat_roughness", "Roughness of the coat.", "0"),
+        share("coat_roughness_anisotropy", "Stretches the coat's highlights.", "0"),
+        index("coat_ior", "Index of refraction of the coat.", "1.6"),
+        plain_share("coat_darkening",
+                    "Share of the darkening that light sent back inside the coat gives a matte base; 1 is nature's.",
+                    "1"),
+        share("fuzz_weight", "Share of the surface under fibres.", "0"),
+        colour("fuzz_color", "Reflectance of the fibres.", "1"),
+        share("fuzz_roughness", "Roughness of the fibres.", "0.5"));
   }
   static constexpr auto film() {
     using namespace openpbr;
@@ -117,7 +123,7 @@ struct OpenPbr {
                       Param{.name = "geometry_thin_walled",
                             .kind = Kind::boolean,
                             .doc = "The surface is a thin wall, not the bound of a body: what is clear refracts "
-                                   "nothing and is smooth.",
+                                   "nothing; its front is as rough as it says, its back smooth.",
                             .preset = "false"});
   }
 

@@ -34,13 +34,8 @@ struct RoughInterface {
     return fresnel_dielectric(cosine, across(above));
   }
 
-  struct Lobes {
-    Spectrum value;
-    Spectrum pdf;  // if each lane were the hero
-  };
-
   // Not inlined, so that compilers for GPUs have one copy of it to work on.
-  ACCURAY_NOINLINE Lobes lobes(Vec3 wo, Vec3 wi) const {
+  ACCURAY_NOINLINE BsdfLobes lobes(Vec3 wo, Vec3 wi) const {
     if (wo.z == 0.0f || wi.z == 0.0f) return {lanes(0.0f), lanes(0.0f)};
     const bool above = wo.z > 0.0f;
     if (!above) {
@@ -64,7 +59,7 @@ struct RoughInterface {
     if (wi.z == 0.0f) return no_sample();
     const bool crosses = wi.z < 0.0f;
     if (!above) wi.z = -wi.z;
-    const Lobes both = lobes(wo, wi);
+    const BsdfLobes both = lobes(wo, wi);
     if (both.pdf[0] == 0.0f) return no_sample();
     const float e = crosses ? across(0, above) : 1.0f;
     const uint32_t lobe = lobe_glossy | (crosses ? lobe_transmission | (disperses ? lobe_disperses : 0u) : 0u);
@@ -127,7 +122,7 @@ struct RoughInterface {
     return wi.z < 0.0f ? wi : Vec3{0, 0, 0};
   }
 
-  Lobes reflected(Vec3 wo, Vec3 wi, bool above) const {
+  BsdfLobes reflected(Vec3 wo, Vec3 wi, bool above) const {
     const Vec3 half = wo + wi;
     const float root_o = facets.root(wo);
     const float density = facets.density(half);
@@ -146,12 +141,12 @@ struct RoughInterface {
   }
 
   // Walter et al. 2007, eq. 21, with the square of n_o taken to the side where radiance is scaled.
-  Lobes refracted(Vec3 wo, Vec3 wi, bool above) const {
+  BsdfLobes refracted(Vec3 wo, Vec3 wi, bool above) const {
     const float cos_i = -wi.z;
     const float root_o = facets.root(wo);
     const float masking = correlated_masking(wo.z, root_o, cos_i, facets.root(wi));
     const Loss lost = lost_from(wo.z, above);
-    Lobes both;
+    BsdfLobes both;
     both.pdf = lanes(0.0f);
     const Spectrum once = by_lane([&](int k) {
       const float n_o = above ? 1.0f : ior[k];

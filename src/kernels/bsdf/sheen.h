@@ -84,28 +84,12 @@ struct Sheen {
       "behind it. What they do not reflect is absorbed.";
   static constexpr Keeps keeps{.exact_pdf = true, .reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
-    return param_list(
-        Param{.name = "color",
-              .kind = Kind::spectrum,
-              .doc = "Share of the light that meets the fibres that they reflect.",
-              .preset = "1",
-              .low = 0,
-              .high = 1,
-              .unit = "1",
-              .role = "reflectance",
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Sheen, color)},
-        Param{.name = "roughness",
-              .kind = Kind::real,
-              .doc = "How far the fibres lean: a thin bright edge near 0, dusty at 1. Below 0.05 it stays "
-                     "as it is there.",
-              .preset = "0.5",
-              .low = 0,
-              .high = 1,
-              .texturable = true,
-              .animatable = true,
-              .member = ACCURAY_OFFSET_OF(Sheen, roughness)});
+    return param_list(reflectance_param("color", "Share of the light that meets the fibres that they reflect.", "1",
+                                        ACCURAY_OFFSET_OF(Sheen, color)),
+                      share_param("roughness",
+                                  "How far the fibres lean: a thin bright edge near 0, dusty at 1. Below 0.05 it stays "
+                                  "as it is there.",
+                                  "0.5", ACCURAY_OFFSET_OF(Sheen, roughness)));
   }
   SheenAt at(const ShadingPoint& p) const { return {p.spectrum(color), p.real(roughness)}; }
 };

@@ -62,17 +62,8 @@ struct ThinDielectric {
   static constexpr bool transmits = true;
   static constexpr Keeps keeps{.reciprocal = true, .energy_conserving = true};
   static constexpr auto params() {
-    return param_list(Param{.name = "ior",
-                            .kind = Kind::spectrum,
-                            .doc = "Index of the pane relative to what is around it, as for a dielectric.",
-                            .preset = "1.5",
-                            .low = 0.05,
-                            .high = 20,
-                            .unit = "1",
-                            .role = "index",
-                            .texturable = true,
-                            .animatable = true,
-                            .member = ACCURAY_OFFSET_OF(ThinDielectric, ior)});
+    return param_list(index_param("ior", "Index of the pane relative to what is around it, as for a dielectric.", "1.5",
+                                  ACCURAY_OFFSET_OF(ThinDielectric, ior)));
   }
   ThinDielectricAt at(const ShadingPoint& p) const { return {p.spectrum(ior), p.exterior, p.wl.hero_only}; }
 };

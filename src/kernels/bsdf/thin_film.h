@@ -169,17 +169,7 @@ constexpr ParamList<2> film_params(uint32_t thickness, uint32_t ior) {
             .texturable = true,
             .animatable = true,
             .member = thickness},
-      Param{.name = "film_ior",
-            .kind = Kind::spectrum,
-            .doc = "Index of the film, counted as the surface's own index is.",
-            .preset = "1.33",
-            .low = 0.05,
-            .high = 20,
-            .unit = "1",
-            .role = "index",
-            .texturable = true,
-            .animatable = true,
-            .member = ior});
+      index_param("film_ior", "Index of the film, counted as the surface's own index is.", "1.33", ior));
 }
 
 }  // namespace accuray

@@ -57,6 +57,12 @@ inline Spectrum exterior_ior(const SceneView& scene, uint32_t interior, uint32_t
   return scene.spectrum(scene.interiors[exterior].ior, wl);
 }
 
+// What a body's surface lets through has its colour where that belongs to no depth.
+inline bool is_tinted(const SceneView& scene, uint32_t interior) {
+  return interior != none && scene.interiors[interior].per_depth == 0.0f &&
+         scene.interiors[interior].color.index != none;
+}
+
 // Share of the light that an interior lets through over a distance: Beer 1852, with the colour that remains after a
 // given depth in place of the coefficient.
 inline Spectrum share_after(const SceneView& scene, uint32_t interior, float distance, const Wavelengths& wl) {

@@ -103,7 +103,7 @@ struct PathTracing {
         sample_light(scene, accel, strategy, material, surface, frame, bsdf, wo, u_light, u_choice, path);
       }
       const BsdfSample sample = bsdf.sample(wo, u_lobe, u_bsdf);
-      return can_afford(path, sample.lobe) && scatter(material, surface, frame, sample, path);
+      return can_afford(path, sample.lobe) && scatter(scene, material, surface, frame, sample, path);
     });
     if (path.alive) path.alive = survives(path, static_cast<uint32_t>(roulette_depth), u_roulette);
   }

@@ -55,7 +55,7 @@ struct Reference {
         using Bsdf = typename decltype(type)::type;
         const auto bsdf = scene.as<Bsdf>(material.bsdf).at(point);
         add_points(scene, accel, material, surface, frame, bsdf, wo, path);
-        return scatter(material, surface, frame, bsdf.sample(wo, u_decision[1], {u[2], u[3]}), path);
+        return scatter(scene, material, surface, frame, bsdf.sample(wo, u_decision[1], {u[2], u[3]}), path);
       });
       if (path.alive && path.depth >= 8) path.alive = survives(path, 8, u_decision[2]);
     }

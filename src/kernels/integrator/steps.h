@@ -4,6 +4,7 @@
 #include "kernels/accel/accel.h"
 #include "kernels/bsdf/list.h"
 #include "kernels/integrator/shading.h"
+#include "kernels/integrator/weights.h"
 #include "kernels/light/emission.h"
 #include "kernels/light/select.h"
 #include "kernels/texture/opacity.h"
@@ -12,23 +13,6 @@ namespace accuray {
 
 // Which estimates of direct light count: both with multiple importance sampling, or one alone (for tests).
 enum class Strategy : uint32_t { mis, light, bsdf };
-
-// Share of the first of two techniques: power heuristic with exponent 2 (Veach and Guibas 1995).
-inline float mis_weight(float pdf, float other) {
-  const float a = pdf * pdf;
-  return a / (a + other * other);
-}
-// Share of a light sample, by lane where the BSDF's density depends on which of them is the hero: a path that refracts
-// goes on with its hero alone, and its other half must be the same function of the wavelength.
-template <class BsdfAt>
-inline Spectrum light_weight(float pdf, const BsdfAt& bsdf, Vec3 wo, Vec3 wi) {
-  if constexpr (requires { bsdf.pdfs(wo, wi); }) {
-    const Spectrum other = bsdf.pdfs(wo, wi);
-    return pdf * pdf / (pdf * pdf + other * other);
-  } else {
-    return lanes(mis_weight(pdf, bsdf.pdf(wo, wi)));
-  }
-}
 
 // What decides about partly opaque surfaces at this vertex: one stream for the path, one for light that it asks for.
 enum class OpacityStream : uint32_t { path = 0x6f706163u, light = 0x6f706c74u };
@@ -113,14 +97,23 @@ inline float visible_share(const SceneView& scene, const A& accel, const Path& p
   return accel.transmittance(ray);
 }
 
-// Share of a light sample that the body around it lets through, on whichever side of the surface it comes from.
-inline Spectrum share_towards(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
-                              const LightSample& light, const Path& path) {
+// Share of a light sample that the body around it lets through.
+inline Spectrum share_of_way(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
+                             const LightSample& light, bool crosses, const Path& path) {
   if (light.distance == infinity) return lanes(1.0f);
-  const bool crosses = (dot(surface.normal, light.wi) > 0.0f) == leaves(path, surface);
   const uint32_t filling =
       crosses && material.interior != none ? exterior_at(scene, material, surface, path) : path.inside.filling(scene);
   return share_after(scene, filling, light.distance, path.wl);
+}
+
+// Share that the surface and the body let through, on whichever side of the surface the light comes from.
+inline Spectrum share_towards(const SceneView& scene, const MaterialRecord& material, const Surface& surface,
+                              const LightSample& light, const Path& path) {
+  const bool crosses = (dot(surface.normal, light.wi) > 0.0f) == leaves(path, surface);
+  const Spectrum share = share_of_way(scene, material, surface, light, crosses, path);
+  if (crosses && is_tinted(scene, material.interior)) [[unlikely]]
+    return share * scene.spectrum(scene.interiors[material.interior].color, path.wl);
+  return share;
 }
 
 // Step sample_light: next-event estimation at a vertex whose BSDF values are `bsdf`.
@@ -139,17 +132,18 @@ inline void sample_light(const SceneView& scene, const A& accel, Strategy strate
   // A shading normal must not carry light through the true surface.
   const Vec3 wi = frame.to_local(light.wi);
   const bool same_side = (dot(surface.normal, light.wi) > 0.0f) == (wi.z > 0.0f);
-  const Spectrum f = same_side ? bsdf.eval(wo, wi) : lanes(0.0f);
-  if (is_black(f)) return;
+  if (!same_side) return;
   const float pdf = light.pdf * choice.probability;
   const bool alone = delta || strategy == Strategy::light;
-  const Spectrum weight = alone ? lanes(1.0f) : light_weight(pdf, bsdf, wo, wi);
+  const LightValue towards = towards_light(bsdf, wo, wi, pdf, alone);
+  if (is_black(towards.value)) return;
   const float share = visible_share(scene, accel, path, surface, light);
   if (share == 0.0f) return;
   Spectrum arriving =
-      sampled_emission(scene, choice.light, light.point, path.wl) * weight * (light.scale * share / pdf);
-  if (path.inside.count != 0) arriving *= share_towards(scene, material, surface, light, path);
-  path.radiance = fma(path.throughput * f, arriving, path.radiance);
+      sampled_emission(scene, choice.light, light.point, path.wl) * towards.weight * (light.scale * share / pdf);
+  if (path.inside.count != 0 || is_tinted(scene, material.interior))
+    arriving *= share_towards(scene, material, surface, light, path);
+  path.radiance = fma(path.throughput * towards.value, arriving, path.radiance);
 }
 
 // A largest number of scattering events, -1 for any, lowered to one: emission and direct light.
@@ -163,7 +157,7 @@ inline uint32_t depth_cost(uint32_t lobe) {
 }
 
 // Continues the path along a BSDF sample; false if there is nothing to continue.
-inline bool scatter(const MaterialRecord& material, const Surface& surface, const Frame& frame,
+inline bool scatter(const SceneView& scene, const MaterialRecord& material, const Surface& surface, const Frame& frame,
                     const BsdfSample& sample, Path& path) {
   const Vec3 wi = frame.to_world(sample.wi);
   const bool same_side = (dot(surface.normal, wi) > 0.0f) == (sample.wi.z > 0.0f);
@@ -173,7 +167,11 @@ inline bool scatter(const MaterialRecord& material, const Surface& surface, cons
     path.throughput = keep_hero(path.throughput);
     path.wl.hero_only = true;
   }
-  if ((sample.lobe & lobe_transmission) != 0) cross_surface(material, surface, path);
+  if ((sample.lobe & lobe_transmission) != 0) {
+    cross_surface(material, surface, path);
+    if (is_tinted(scene, material.interior)) [[unlikely]]
+      path.throughput *= scene.spectrum(scene.interiors[material.interior].color, path.wl);
+  }
   path.eta_scale *= sample.eta_scale;
   path.bsdf_pdf = sample.pdf;
   widen_cone(surface.point, sample.pdf, path);
