@@ -20,6 +20,7 @@ from accuray.scene.photometry import Photometry
 
 MAX_BYTES = 16 << 20
 MAX_VALUES = 1 << 20
+MAX_LUMENS = 1e15
 FIRST_LINES = {
     "IESNA91": 1991,
     "IESNA:LM-63-1995": 1995,
@@ -120,6 +121,8 @@ def _pass_tilt(text: str, line: int, numbers: _Numbers) -> None:
 def _photometry(numbers: _Numbers, year: int) -> Photometry:
     lamps = numbers.count("the number of lamps", 0)
     lumens = numbers.take("the lumens of a lamp")
+    if lumens > MAX_LUMENS:
+        raise ValueError(f"line {numbers.line}: the lumens of a lamp are {lumens:g}; allowed are up to {MAX_LUMENS:g}")
     multiplier = numbers.factor("the candela multiplier")
     verticals = numbers.count("the number of vertical angles", 2)
     horizontals = numbers.count("the number of horizontal angles", 1)
@@ -143,7 +146,9 @@ def _photometry(numbers: _Numbers, year: int) -> Photometry:
         raise ValueError(f"line {numbers.line}: vertical angles are {span}; allowed are 0 to 180")
     horizontal = _rising(numbers.several(horizontals, "horizontal angle"), "horizontal", numbers.line)
     last = numbers.line
-    candela = numbers.several(verticals * horizontals, "candela").reshape(horizontals, verticals) * multiplier
+    candela = numbers.several(verticals * horizontals, "candela").reshape(horizontals, verticals)
+    with np.errstate(over="ignore"):
+        candela = candela * multiplier
     numbers.end()
     if not np.isfinite(candela).all() or candela.min() < 0.0 or candela.max() > 1e30:
         raise ValueError(f"candelas are {candela.min():g} to {candela.max():g}; allowed are 0 to 1e30")
@@ -152,6 +157,8 @@ def _photometry(numbers: _Numbers, year: int) -> Photometry:
 
 
 def _rising(angles: Array, name: str, line: int) -> Array:
+    """The angles in thousandths of a degree, which single precision in radians still tells apart."""
+    angles = np.round(angles, 3)
     if (np.diff(angles) <= 0.0).any():
         at = int(np.argmax(np.diff(angles) <= 0.0))
         raise ValueError(f"line {line}: the {name} angle {angles[at + 1]:g} does not rise from {angles[at]:g}")
@@ -161,22 +168,21 @@ def _rising(angles: Array, name: str, line: int) -> Array:
 def _unfolded(horizontal: Array, candela: Array, line: int) -> tuple[Array, Array]:
     """Angles from 0 to 360 and their candelas, by the symmetry that the first and the last angle stand for.
 
-    The last angle of a whole circle may be left out: then it is the first one's candelas that stand at 360.
+    The last angle of a whole circle may be left out, one step before 360: there the first one's candelas stand again.
     """
     if len(horizontal) == 1:
         return np.zeros(1), candela
     first, last = float(horizontal[0]), float(horizontal[-1])
-    if first == 0.0 and 180.0 < last < 360.0:
+    if first == 0.0 and 0.0 < 360.0 - last <= 1.001 * float(np.diff(horizontal).max()):
         horizontal, candela, last = np.append(horizontal, 360.0), np.vstack([candela, candela[:1]]), 360.0
-    whole = np.linspace(0.0, 360.0, 5)
     if (first, last) == (0.0, 90.0):  # each quadrant alike
-        angles = np.concatenate([horizontal, 180.0 - horizontal, 180.0 + horizontal, 360.0 - horizontal, whole])
+        angles = np.concatenate([horizontal, 180.0 - horizontal, 180.0 + horizontal, 360.0 - horizontal])
         source = 90.0 - np.abs(90.0 - np.unique(angles) % 180.0)
     elif (first, last) == (0.0, 180.0):  # both sides of the plane of 0 and 180 alike
         angles = np.concatenate([horizontal, 360.0 - horizontal])
         source = 180.0 - np.abs(180.0 - np.unique(angles))
     elif (first, last) == (90.0, 270.0):  # both sides of the plane of 90 and 270 alike
-        angles = np.concatenate([horizontal, (540.0 - horizontal) % 360.0, whole])
+        angles = np.concatenate([horizontal, (540.0 - horizontal) % 360.0, [0.0, 360.0]])
         source = _mirrored(np.unique(angles))
     elif (first, last) == (0.0, 360.0):
         return horizontal, candela
