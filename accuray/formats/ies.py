@@ -168,12 +168,12 @@ def _rising(angles: Array, name: str, line: int) -> Array:
 def _unfolded(horizontal: Array, candela: Array, line: int) -> tuple[Array, Array]:
     """Angles from 0 to 360 and their candelas, by the symmetry that the first and the last angle stand for.
 
-    The last angle of a whole circle may be left out, one step before 360: there the first one's candelas stand again.
+    The last angle of a whole circle may be left out, a step before 360; there the first one's candelas stand again.
     """
     if len(horizontal) == 1:
         return np.zeros(1), candela
     first, last = float(horizontal[0]), float(horizontal[-1])
-    if first == 0.0 and 0.0 < 360.0 - last <= 1.001 * float(np.diff(horizontal).max()):
+    if first == 0.0 and 0.0 < 360.0 - last <= 1.001 * float(np.diff(horizontal).min()):
         horizontal, candela, last = np.append(horizontal, 360.0), np.vstack([candela, candela[:1]]), 360.0
     if (first, last) == (0.0, 90.0):  # each quadrant alike
         angles = np.concatenate([horizontal, 180.0 - horizontal, 180.0 + horizontal, 360.0 - horizontal])
