@@ -7,6 +7,7 @@ table is taken as it is.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -69,6 +70,13 @@ def glowing_under(scene: accuray.Scene, lamp: str, factor: float, material: str,
     return glowing(enlarged(scene, lamp, factor), material, radiance)
 
 
+def widened(scene: accuray.Scene, outer: float) -> accuray.Scene:
+    """Spot lights with cones of this half-angle in degrees, whose edges begin in the middle."""
+    cone = {"outer_angle": math.radians(outer), "inner_angle": math.radians(0.1 * outer)}
+    lights = {name: light | cone if light["type"] == "spot" else light for name, light in scene.lights.items()}
+    return replace(scene, lights=lights)
+
+
 def dimmed(scene: accuray.Scene, names: tuple[str, ...], factor: float) -> accuray.Scene:
     """The materials called so emit `factor` of their light."""
     changed = {name: dict(scene.materials[name]) for name in names}
@@ -121,6 +129,7 @@ FAIR = {
     ),
     "furnace": Fair("as it is: its light comes from everywhere"),
     "glass-and-texture": Fair("the wall glows", partial(glowing, material="wall", radiance=1.0)),
+    "ies": Fair("the wall glows", partial(glowing, material="plaster", radiance=0.002)),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "openpbr": Fair("the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3.0)),
     "rough-metals": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
@@ -129,6 +138,7 @@ FAIR = {
     "spheres": Fair(
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
+    "spot": Fair("cones of 70 degrees, so that every lamp lights most of the stage", partial(widened, outer=70.0)),
     "teapot": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),
     "thin-film": Fair("the ground glows", partial(glowing, material="ground", radiance=0.2)),
     "torus-knot": Fair("the room glows", partial(glowing, material="plaster", radiance=1.0)),
