@@ -59,10 +59,11 @@ def glowing(scene: accuray.Scene, material: str, radiance: float) -> accuray.Sce
 
 
 def brightened(scene: accuray.Scene, light: str, factor: float) -> accuray.Scene:
-    """A constant environment with `factor` times its radiance."""
+    """An infinite light with `factor` times its radiance or irradiance."""
     table = scene.lights[light]
-    radiance = replace(table["radiance"], scale=table["radiance"].scale * factor)
-    return replace(scene, lights=scene.lights | {light: table | {"radiance": radiance}})
+    key = next(key for key, value in table.items() if isinstance(value, Spectrum))
+    brighter = replace(table[key], scale=table[key].scale * factor)
+    return replace(scene, lights=scene.lights | {light: table | {key: brighter}})
 
 
 def glowing_under(scene: accuray.Scene, lamp: str, factor: float, material: str, radiance: float) -> accuray.Scene:
@@ -129,7 +130,7 @@ FAIR = {
     ),
     "furnace": Fair("as it is: its light comes from everywhere"),
     "glass-and-texture": Fair("the wall glows", partial(glowing, material="wall", radiance=1.0)),
-    "ies": Fair("the wall glows", partial(glowing, material="plaster", radiance=0.002)),
+    "ies": Fair("the moon 20 times as bright", partial(brightened, light="moon", factor=20)),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "openpbr": Fair("the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3.0)),
     "rough-metals": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
