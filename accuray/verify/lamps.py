@@ -125,7 +125,7 @@ def _amounts() -> list[Case]:
     rows += rows_of(
         "lumen-sphere",
         "A ball lamp of 800 lm at 2 m and 30 degrees: E = flux cos / (4 pi d^2)",
-        "Howell B-46, Lambert 1760",
+        "Howell B-46",
         800.0 * math.cos(math.pi / 6.0) / (16.0 * math.pi**2) * lux,
         [bulb],
         SAMPLED,
