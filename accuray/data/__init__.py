@@ -45,7 +45,7 @@ class Glass(NamedTuple):
 
 def files() -> list[str]:
     """Names of the data files, sorted."""
-    return sorted(path.name for path in FOLDER.iterdir() if path.suffix in (".csv", ".json"))
+    return sorted(path.name for path in FOLDER.iterdir() if path.suffix in (".csv", ".ies", ".json"))
 
 
 @cache

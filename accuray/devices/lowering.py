@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from accuray import data
+from accuray.devices.emitters import lamp, spread_emissions
 from accuray.devices.materials import MaterialLowering
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
@@ -89,7 +90,9 @@ class _Lowering:
         builder, film = self.builder, self.scene.film
         for name, texture in self.scene.textures.items():
             self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        self.materials = MaterialLowering(self.scene.materials, builder, self._values_of, self._guard).numbers()
+        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.triangles)
+        materials = self._guard("materials", spread)
+        self.materials = MaterialLowering(materials, builder, self._values_of, self._guard).numbers()
         self._add_shapes()
         for name, light in self.scene.lights.items():
             self._guard(f"lights.{name}", partial(self._add_light, light))
@@ -222,8 +225,12 @@ class _Lowering:
         return Triangles(positions, faces, normals, uvs, colors)
 
     def _add_light(self, light: Values) -> None:
-        emission = next(v for v in light.values() if isinstance(v, Spectrum))
-        self.builder.add_light(light["type"], self._values("light", light), self._spectrum(emission))
+        from accuray._core import lower as core
+
+        numbers = {key: value for key, value in light.items() if not isinstance(value, Spectrum)}
+        values = self._values("light", numbers)
+        made = lamp(light, values, core.lamp_power)
+        self.builder.add_light(light["type"], values, self._spectrum(made.emission), made.photometry)
 
     def _spectrum(self, spectrum: Spectrum) -> Any:
         """The builder's reference to a spectrum; equal spectra share one."""

@@ -1,7 +1,7 @@
 """Scene and mesh files: one module per format, and one line for it here.
 
-Importing this package registers the readers of meshes and images, so ``Scene.from_dict`` can take such files too:
-the public ``accuray.Scene`` comes from here.
+Importing this package registers the readers of meshes, images and photometry, so ``Scene.from_dict`` can take such
+files too: the public ``accuray.Scene`` comes from here.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import Any
 
-from accuray.formats import image, json, mesh, toml
+from accuray.formats import ies, image, json, mesh, toml
 from accuray.formats.reading import SceneReader, load_scene
 from accuray.scene import Scene
 from accuray.scene.images import register_image_reader
 from accuray.scene.meshes import MeshReader, register_reader
+from accuray.scene.photometry import register_photometry_reader
 
 __all__ = ["MESH_READERS", "SCENE_READERS", "Scene", "load"]
 
@@ -31,6 +32,7 @@ MESH_READERS: dict[str, MeshReader] = {
 for _suffix, _reader in MESH_READERS.items():
     register_reader(_suffix, _reader)
 register_image_reader(image.read)
+register_photometry_reader(".ies", ies.read)
 
 
 def load(

@@ -85,7 +85,8 @@ def _value(value: Any) -> Any:
         return [_value(item) for item in value]
     if isinstance(value, Spectrum):
         fields = {key: _value(getattr(value, key)) for key in _FIELDS_OF_FORM[value.form]}
-        return {"form": value.form, "scale": value.scale.hex(), **fields}
+        flux = {"flux": True} if value.flux else {}
+        return {"form": value.form, "scale": value.scale.hex(), **fields, **flux}
     if isinstance(value, TextureUse):
         return {"texture": value.texture, "scale": value.scale.hex(), "channel": value.channel}
     if isinstance(value, Path):

@@ -7,6 +7,7 @@ from typing import Any
 
 from accuray import data
 from accuray.scene import schema as schemas
+from accuray.scene.amounts import NAMES
 from accuray.scene.kinds import vector_length, vocabulary
 from accuray.scene.scene import FORMAT_VERSION
 from accuray.scene.schema import Family, Param, Type
@@ -191,7 +192,7 @@ def _spectrum() -> Node:
         "scale": {"type": "number", "minimum": 0},
         "extrapolate": {"enum": ["hold", "zero"]},
         "normalize": {"type": "boolean", "description": "Scale to Y = 1 (emission)."},
-        "luminance": {**_QUANTITY, "description": "Scale to this luminance, cd/m^2 (emission)."},
+        **{name: {**_QUANTITY, "description": _amount(name, choices)} for name, choices in NAMES.items()},
     }
     table = {
         "type": "object",
@@ -202,6 +203,10 @@ def _spectrum() -> Node:
     }
     names = {"type": "string", "description": "A name in [spectra], an illuminant, a glass, or a temperature."}
     return {"anyOf": [_NUMBER, forms["rgb"], names, table]}
+
+
+def _amount(name: str, choices: tuple[str, ...]) -> str:
+    return f"Scale to this {name}, {' or '.join(choices)} (emission)."
 
 
 def _textured() -> Node:

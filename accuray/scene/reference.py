@@ -7,6 +7,7 @@ from typing import Any
 
 from accuray import data
 from accuray.scene import schema as schemas
+from accuray.scene.amounts import NAMES
 from accuray.scene.errors import show
 from accuray.scene.kinds import vocabulary
 from accuray.scene.plain import range_text
@@ -57,13 +58,17 @@ A spectrum is written in place or named: `[spectra.NAME]` defines one that any s
 | `{{wavelengths = [..], values = [..]}}` | the same, written out | all |
 | `"6500 K"`, `{{blackbody = "6500 K"}}` | Planck's radiance, absolute unless scaled | emission |
 | `"D65"`, `{{illuminant = "D65"}}` | CIE illuminant scaled to Y = 1: {illuminants} | emission |
+| `"100 cd"`, `"800 lm"`, `"500 lx"`, `"300 nit"`, `"10 W"` | that much light, equal at all wavelengths | emission |
 | `"N-BK7"` | glass: {glasses} | index |
 | `{{sellmeier = {{A0 = 0, B = [..], C = [..]}}}}` | n^2 = 1 + A0 + sum B L^2 / (L^2 - C), L in micrometres | index |
 | `{{cauchy = [A, B]}}` | n = A + B / L^2, L in micrometres | index |
 
 Table spellings also take `scale = number`; tables of wavelengths take `extrapolate = "hold"` (default, zero for
-emissions) or `"zero"`; emissions take `normalize = true` (Y = 1 before `scale`) or `luminance = "1000 cd/m^2"`.
-Here Y = integral(L ybar) / integral(ybar), and L is in W m^-2 sr^-1 nm^-1.
+emissions) or `"zero"`; emissions take `normalize = true` (Y = 1 before `scale`) or one amount of light:
+{amounts}.
+Here Y = integral(L ybar) / integral(ybar), and L is in W m^-2 sr^-1 nm^-1. A luminous amount is 683.002 lm/W times the
+integral of ybar, one in W the integral from 360 to 830 nm. A `flux` is that of the whole emitter: of a point or spot
+light, or of each shape with an emissive material.
 """
 
 _TEXTURES = """A parameter whose kind ends in "or texture" takes `{ texture = "NAME" }` as well, with `scale = number`
@@ -80,6 +85,7 @@ def reference_markdown() -> str:
             files=", ".join(f"`{name}`" for name in data.files()),
             illuminants=", ".join(data.illuminants()),
             glasses=", ".join(data.glasses()),
+            amounts=", ".join(f"`{name}` ({' or '.join(choices)})" for name, choices in NAMES.items()),
         )
     ]
     for name, title in (("render", "Rendering"), ("film", "Film")):

@@ -17,6 +17,7 @@ from accuray.scene.exposure import resolve_exposure
 from accuray.scene.identity import scene_identity
 from accuray.scene.objects import expect_table, resolve_object, resolve_params
 from accuray.scene.paths import Confinement
+from accuray.scene.photometry import read_photometries
 from accuray.scene.scope import Scope
 from accuray.scene.shapes import check_shapes
 from accuray.scene.spectra import check_unused
@@ -37,8 +38,9 @@ class Scene:
     ``film``, ``filter``, ``camera``, ``integrator`` and ``render`` are single tables; ``textures``, ``materials``,
     ``lights`` and ``shapes`` map names, in sorted order, to tables. Each table has "type" where its family has
     types, and every parameter of that type: SI values as ``accuray.scene.kinds`` describes, None for what is neither
-    given nor has a default. ``path`` is the file the scene was read from, None for scenes built in Python;
-    ``mesh_reports`` says, by shape, what was left out of mesh files or made up.
+    given nor has a default; a light with a measured distribution has it as "photometry". ``path`` is the file the
+    scene was read from, None for scenes built in Python; ``mesh_reports`` says, by shape, what was left out of mesh
+    files or made up.
     """
 
     film: dict[str, Any]
@@ -92,6 +94,7 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     materials = _named("materials", schema.material_types, scope)
     lights = _named("lights", schema.family("light").types, scope)
     shapes = _named("shapes", schema.family("shape").types, scope)
+    read_photometries(lights, schema, top.child("lights"))
     check_shapes(shapes, schema, top.child("shapes"))
     openpbr.settle(materials, top.child("materials"))
     check_parts(materials, schema, top.child("materials"))

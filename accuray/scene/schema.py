@@ -16,7 +16,8 @@ from typing import Any
 class Param:
     """One parameter. ``min``, ``max`` and ``default`` are in the documented ``unit``.
 
-    ``untextured`` says why it takes no texture where one might be expected.
+    ``untextured`` says why it takes no texture where one might be expected; ``takes_flux``: the flux of the whole
+    emitter may stand for an emission.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Param:
     group: str = ""
     texturable: bool = False
     untextured: str = ""
+    takes_flux: bool = False
     animatable: bool = False
     doc: str = ""
 

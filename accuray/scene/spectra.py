@@ -2,7 +2,8 @@
 
 A spectrum is a number, ``[r, g, b]``, a name, a quantity such as ``"6500 K"``, or a table with one form key
 (``value``, ``rgb``, ``file``, ``wavelengths`` + ``values``, ``blackbody``, ``illuminant``, ``sellmeier``,
-``cauchy``) and modifiers (``scale``, ``extrapolate``, and for emissions ``normalize`` or ``luminance``).
+``cauchy``) and modifiers (``scale``, ``extrapolate``, and for emissions ``normalize`` or an amount of light such as
+``luminance``). A quantity that is an amount, ``"100 cd"``, is white light, the same at all wavelengths.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from accuray import data
-from accuray.scene import units
+from accuray.scene import amounts, units
 from accuray.scene.errors import SceneError, Where
 from accuray.scene.plain import finite_number, in_range, number_list, quantity, range_text, text_value
 from accuray.scene.schema import Param
@@ -22,12 +23,10 @@ from accuray.scene.spectrum import FIRST_NM, LAST_NM, Spectrum, xyz
 from accuray.scene.spectrum_file import Column, read_column
 
 KELVIN = Param("blackbody", "float", unit="K", min=500.0, max=100_000.0)
-LUMINANCE = Param("luminance", "float", unit="cd/m^2", min=0.0)
 SCALE = Param("scale", "float", min=0.0)
 RADIANCE_UNIT = "W/(m^2 sr nm)"
-FOLDED_DIGITS = 12
 PERFECT_METAL = "perfect"
-MODIFIERS = ("scale", "extrapolate", "normalize", "luminance")
+MODIFIERS = ("scale", "extrapolate", "normalize", *amounts.NAMES)
 ROLES_OF_FORM = {
     "value": ("reflectance", "emission", "index"),
     "rgb": ("reflectance", "emission"),
@@ -85,7 +84,10 @@ def check_unused(value: Any, where: Where, scope: Scope) -> None:
     """Check a [spectra] entry that nothing refers to: as an emission, the least restricted role, if it can be one."""
     roles = ROLES_OF_FORM[_form_key(where, value)] if isinstance(value, dict) else ("emission",)
     role = "emission" if "emission" in roles else roles[0]
-    parse_spectrum(Param(where.key, "spectrum", role=role, unit=RADIANCE_UNIT, min=0.0), value, where, scope)
+    amount = next((key for key in value if key in amounts.NAMES), "") if isinstance(value, dict) else ""
+    unit, takes_flux = amounts.spectral_unit(amount) if amount else (RADIANCE_UNIT, False)
+    param = Param(where.key, "spectrum", role=role, unit=unit, takes_flux=takes_flux, min=0.0)
+    parse_spectrum(param, value, where, scope)
 
 
 def metal_names() -> list[str]:
@@ -143,10 +145,13 @@ def _from_quantity(reading: _Reading, text: str) -> Spectrum:
         spectrum = _blackbody(reading, text)
     elif exponents == units.parse_unit(param.unit).exponents and exponents:
         spectrum = Spectrum("constant", param.role, value=quantity(param, text, where))
+    elif exponents in amounts.kinds(param):
+        white = Spectrum("constant", param.role, value=1.0)
+        spectrum = amounts.scaled_to(white, amounts.plain_amount(param, text, where), where)
     elif not exponents:
         raise where.error("has no unit (a number is written without quotes)", value=text, allowed=_allowed(param))
     else:
-        takes = f" ({param.unit})" if param.unit not in ("", "1") else ""
+        takes = f" ({', '.join([param.unit, *amounts.fitting_units(param)])})" if param.unit not in ("", "1") else ""
         raise where.error("has the wrong unit", value=text, allowed=_allowed(param) + takes)
     _check_range(reading, spectrum)
     return spectrum
@@ -195,34 +200,32 @@ def _article(role: str) -> str:
 
 
 def _scaled(reading: _Reading, spectrum: Spectrum, table: dict[str, Any]) -> Spectrum:
-    """Folds ``normalize`` or ``luminance``, then ``scale``, into the spectrum."""
+    """Folds ``normalize`` or an amount of light, then ``scale``, into the spectrum."""
     where = reading.where
     normalize = table.get("normalize", False)
     if not isinstance(normalize, bool):
         raise where.child("normalize").error("is not a truth value", value=normalize, allowed="true or false")
-    modifier = "luminance" if "luminance" in table else "normalize" if normalize else ""
-    if modifier and reading.role != "emission":
-        raise where.child(modifier).error(f"is for emissions, and this is {_article(reading.role)}")
-    if modifier == "luminance":
-        if normalize or reading.param.unit != RADIANCE_UNIT:
-            problem = "cannot go with `normalize`" if normalize else "does not fit this parameter"
-            allowed = None if normalize else f"scale, for a quantity in {reading.param.unit or 'any unit'}"
-            raise where.child("luminance").error(problem, value=table["luminance"], allowed=allowed)
-        luminance = quantity(LUMINANCE, table["luminance"], where.child("luminance"))
-        spectrum = _with_y(reading, spectrum, luminance / (data.LUMINOUS_EFFICACY * sum(data.observer().y)))
-    elif modifier == "normalize":
+    given = [key for key in table if key in amounts.NAMES] + ["normalize"] * normalize
+    if given and reading.role != "emission":
+        raise where.child(given[0]).error(f"is for emissions, and this is {_article(reading.role)}")
+    if len(given) > 1:
+        raise where.child(given[0]).error(f"cannot go with `{given[-1]}`", value=table[given[0]])
+    if normalize:
         spectrum = _with_y(reading, spectrum, 1.0)
+    elif given:
+        amount = amounts.named_amount(reading.param, given[0], table[given[0]], where.child(given[0]))
+        spectrum = amounts.scaled_to(spectrum, amount, where)
     if "scale" in table:
         spectrum = spectrum.times(quantity(SCALE, table["scale"], where.child("scale")))
     return spectrum
 
 
 def _with_y(reading: _Reading, spectrum: Spectrum, target: float) -> Spectrum:
-    """Scaled so that Y = target. The factor is rounded to 12 digits, so no platform's libm shows in it."""
+    """Scaled so that Y = target."""
     y = xyz(spectrum)[1]
     if not y > 0.0 or not math.isfinite(target / y):
         raise reading.where.error("has no visible light, so it cannot be scaled to a luminance")
-    return spectrum.times(float(f"{target / y:.{FOLDED_DIGITS - 1}e}"))
+    return amounts.folded(spectrum, target / y)
 
 
 def _check_range(reading: _Reading, spectrum: Spectrum, form: str = "") -> None:
@@ -326,7 +329,7 @@ def _illuminant(name: str) -> Spectrum:
         return Spectrum("constant", "emission", value=1.0)
     wavelengths, values = data.illuminants()[name]
     spectrum = Spectrum("table", "emission", wavelengths=wavelengths, values=values, extrapolate="zero")
-    return replace(spectrum, scale=float(f"{1.0 / xyz(spectrum)[1]:.{FOLDED_DIGITS - 1}e}"))
+    return replace(spectrum, scale=float(f"{1.0 / xyz(spectrum)[1]:.{amounts.FOLDED_DIGITS - 1}e}"))
 
 
 def _glass(name: str) -> Spectrum:

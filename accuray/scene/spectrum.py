@@ -40,7 +40,8 @@ class Spectrum:
     the illuminant named by white, scaled to Y = 1), "table" (wavelengths, values, extrapolate "hold" or "zero";
     linear between the points), "blackbody" (kelvin; absolute Planck radiance in W m^-2 sr^-1 nm^-1), "sellmeier"
     (n^2 = 1 + A0 + sum B L^2 / (L^2 - C)), "cauchy" (n = A0 + B[0] / L^2); L in micrometres.
-    ``role`` is "reflectance", "emission" or "index".
+    ``role`` is "reflectance", "emission" or "index". With ``flux`` an emission is that of the whole emitter, W/nm,
+    which the lowering spreads over its surface or directions.
     """
 
     form: str
@@ -56,6 +57,7 @@ class Spectrum:
     B: Numbers = ()
     C: Numbers = ()
     scale: float = 1.0
+    flux: bool = False
 
     def at(self, wavelength: float) -> float:
         """Value at a wavelength in nm (not for "rgb", which the renderer upsamples); nan where undefined."""
@@ -139,6 +141,18 @@ def xyz(spectrum: Spectrum) -> XYZ:
         sums = [total / _y_integral() for total in _integrals(spectrum)]
     x, y, z = (spectrum.scale * total for total in sums)
     return x, y, z
+
+
+def radiant(spectrum: Spectrum) -> float:
+    """Integral over 360-830 nm, nm times the unit, by the rule of ``xyz``; nan for RGB."""
+    if spectrum.form == "constant":
+        return spectrum.scale * spectrum.value * (LAST_NM - FIRST_NM)
+    unscaled = replace(spectrum, scale=1.0)
+    total = 0.0
+    for left, right in _pieces(spectrum):
+        middle = 0.5 * (left + right)
+        total += (right - left) / 6.0 * (unscaled.at(left) + 4.0 * unscaled.at(middle) + unscaled.at(right))
+    return spectrum.scale * total
 
 
 def _integrals(spectrum: Spectrum) -> XYZ:

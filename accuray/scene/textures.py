@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
+from accuray.scene.amounts import lumens_per_y
 from accuray.scene.composition import all_parts
 from accuray.scene.errors import Where
 from accuray.scene.plain import choice, quantity
@@ -18,6 +19,7 @@ MAP = "map"
 
 Objects = dict[str, dict[str, Any]]
 _SCALE = Param("scale", "float", default=1.0, min=0.0)
+_LUMINANCE = Param("scale", "float", unit="cd/m^2", min=0.0)
 _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
 
 
@@ -25,7 +27,8 @@ _CHANNEL = Param("channel", "enum", default="red", choices=CHANNELS)
 class TextureUse:
     """A parameter's value that a texture gives, times ``scale``: its colour, or for a number or index a channel.
 
-    ``scale`` is in the renderer's unit where the number has one (metres of a thickness). ``channel`` is "" for a
+    ``scale`` is in the renderer's unit where the number has one (metres of a thickness), and that of an emission is the
+    Y of white. ``channel`` is "" for a
     colour, "map" for a normal or bump map.
     """
 
@@ -58,7 +61,11 @@ def parse_use(param: Param, value: Any, where: Where, scope: Scope) -> TextureUs
     name, known = value["texture"], scope.names("textures")
     if not isinstance(name, str) or name not in known:
         raise where.child("texture").unknown(name, "texture", known)
-    scale = quantity(replace(_SCALE, unit=unit), value.get("scale", _SCALE.default), where.child("scale"))
+    given = value.get("scale", _SCALE.default)
+    if param.role == "emission" and isinstance(given, str):
+        scale = quantity(_LUMINANCE, given, where.child("scale")) / lumens_per_y()
+    else:
+        scale = quantity(replace(_SCALE, unit=unit), given, where.child("scale"))
     if not number:
         return TextureUse(name, scale, MAP if param.kind == "reference" else "")
     return TextureUse(name, scale, choice(_CHANNEL, value.get("channel", _CHANNEL.default), where.child("channel")))

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from accuray.verify import form_factors
+from accuray.verify import form_factors, lamps
 from accuray.verify.case import Case, FloatArray
 from accuray.verify.probes import RayProbe, from_all_sides, looking_at
+from accuray.verify.receiver import ALBEDO, ALL, SAMPLED, UP, receiver, rows_of
 from accuray.verify.scenes import (
     Solid,
     Table,
@@ -28,13 +28,7 @@ from accuray.verify.scenes import (
     square,
 )
 
-ALBEDO = 0.5
-UP = (0.0, 1.0, 0.0)
 DOWN = (0.0, -1.0, 0.0)
-ALL = ("mis", "light", "bsdf", "reference")
-SAMPLED = ("mis", "light")
-#: Lamps of a smaller configuration factor are met by too few of the BSDF's samples for the short run.
-SELDOM_MET = 0.08
 
 #: Cornell's lamp, four receivers (point, normal), lengths in millimetres (Cornell box data, 1998).
 CORNELL_LAMP = ((343.0, 548.8, 227.0), (343.0, 548.8, 332.0), (213.0, 548.8, 332.0), (213.0, 548.8, 227.0))
@@ -46,39 +40,10 @@ CORNELL_POINTS = {
 }
 
 
-def _receiver(point: ArrayLike = (0.0, 0.0, 0.0), normal: ArrayLike = UP, size: float = 0.2) -> Solid:
-    return square(point, normal, size, diffuse(ALBEDO))
-
-
-def _rows(
-    name: str,
-    sentence: str,
-    source: str,
-    factor: float,
-    solids: Sequence[Solid],
-    strategies: Sequence[str],
-    lights: Sequence[Table] = (),
-    normal: ArrayLike = UP,
-) -> list[Case]:
-    """One case per strategy: the receiver at the origin shows albedo times the configuration factor."""
-    everything = [_receiver(normal=normal), *solids]
-    return [
-        Case(
-            id=f"C1.{name}/{strategy}",
-            sentence=sentence,
-            source=source,
-            expected=(ALBEDO * factor,),
-            probe=RayProbe(assemble(everything, lights, direct_only(strategy)), looking_at((0, 0, 0), normal)),
-            quick=factor == 0.0 or factor >= SELDOM_MET or strategy in SAMPLED,
-        )
-        for strategy in strategies
-    ]
-
-
 def _disks() -> list[Case]:
     overhead = disk((0, 2, 0), DOWN, 1.0, lamp())
     shadow = rectangle((0, 1, -5), (5, 0, 0), (0, 0, 10), black())
-    rows = _rows(
+    rows = rows_of(
         "disk-on-axis",
         "A disk lamp straight above, F = R^2 / (R^2 + h^2)",
         "rings of cos cos / (pi d^2)",
@@ -86,7 +51,7 @@ def _disks() -> list[Case]:
         [overhead],
         (*ALL, "direct"),
     )
-    rows += _rows(
+    rows += rows_of(
         "disk-off-axis",
         "A disk lamp shifted by 1.5 radii",
         "Howell B-13",
@@ -94,7 +59,7 @@ def _disks() -> list[Case]:
         [disk((1.5, 1, 0), DOWN, 1.0, lamp())],
         ALL,
     )
-    rows += _rows(
+    rows += rows_of(
         "penumbra",
         "A disk lamp half covered by a blocker whose edge crosses the axis: half the light",
         "symmetry",
@@ -102,7 +67,7 @@ def _disks() -> list[Case]:
         [overhead, shadow],
         ALL,
     )
-    rows += _rows(
+    rows += rows_of(
         "disk-behind",
         "The back of a one-sided lamp is dark",
         "definition of emission_sides",
@@ -110,7 +75,7 @@ def _disks() -> list[Case]:
         [disk((0, 2, 0), UP, 1.0, lamp())],
         ALL,
     )
-    rows += _rows(
+    rows += rows_of(
         "disk-two-sided",
         "A two-sided lamp seen from its back shines as from its front",
         "definition of emission_sides",
@@ -130,7 +95,7 @@ def _rectangles() -> list[Case]:
         {**unit[0], "transform": [{"rotate": {"axis": [0, 1, 0], "angle": "90 deg"}, "scale": 2.0}, _lift(1.0)]},
         unit[1],
     )
-    rows = _rows(
+    rows = rows_of(
         "rectangle-corner",
         "A square lamp with one corner straight above",
         "Howell B-5",
@@ -138,10 +103,10 @@ def _rectangles() -> list[Case]:
         [rectangle((0, 1, 0), (1, 0, 0), (0, 0, 1), lamp())],
         ALL,
     )
-    rows += _rows(
+    rows += rows_of(
         "rectangle-centre", "A square lamp of 2 x 2 at height 1", "Howell B-5", centre, [_overhead(2.0, 1.0)], ALL
     )
-    rows += _rows(
+    rows += rows_of(
         "rectangle-scaled",
         "The same lamp as a unit square scaled by 2: emitted flux follows the scaled area",
         "Howell B-5",
@@ -149,7 +114,7 @@ def _rectangles() -> list[Case]:
         [moved],
         (*SAMPLED, "reference"),
     )
-    rows += _rows(
+    rows += rows_of(
         "rectangle-near",
         "A square lamp at a tenth of its width: no blow-up of 1/d^2",
         "Howell B-5",
@@ -171,7 +136,7 @@ def _lift(height: float) -> Table:
 def _triangles() -> list[Case]:
     octant = [(1, 0, 0), (0, 0, 1), (0, 1, 0)]
     normal = np.ones(3) / math.sqrt(3.0)
-    rows = _rows(
+    rows = rows_of(
         "octant-triangle",
         "A triangle that fills an octant of directions, F = sqrt(3) / 4",
         "Lambert 1760",
@@ -182,7 +147,7 @@ def _triangles() -> list[Case]:
     )
     pentagon = [(1.2, 1.0, 0.1), (0.4, 1.4, -0.9), (-1.1, 1.6, -0.6), (-0.9, 1.2, 0.9), (0.5, 0.9, 1.1)]
     flat = _flattened(pentagon)
-    rows += _rows(
+    rows += rows_of(
         "pentagon",
         "A slanted pentagon, split into triangles",
         "Lambert 1760",
@@ -209,7 +174,7 @@ def _cornell() -> list[Case]:
     for name, (point, normal) in CORNELL_POINTS.items():
         factor = form_factors.polygon(CORNELL_LAMP, point, normal)
         for strategy in SAMPLED:
-            solids = [_receiver(point, normal, 1.0), light]
+            solids = [receiver(point, normal, 1.0), light]
             scene = assemble(solids, (), direct_only(strategy), length_unit="mm")
             view = looking_at(1e-3 * np.asarray(point), normal, 1e-4)
             probe = RayProbe(scene, view)
@@ -225,7 +190,7 @@ def _spheres() -> list[Case]:
         center = (2.0 * math.sin(theta), 2.0 * math.cos(theta), 0.0)
         strategies = ALL if degrees < 80 else (*SAMPLED, "reference")
         cut = ", cut by the horizon" if degrees >= 80 else ""
-        rows += _rows(
+        rows += rows_of(
             f"sphere-{degrees}",
             f"A sphere lamp at {degrees} degrees from the normal{cut}",
             "Howell B-46",
@@ -233,7 +198,7 @@ def _spheres() -> list[Case]:
             [sphere(center, 1.0, lamp())],
             strategies,
         )
-    rows += _rows(
+    rows += rows_of(
         "sphere-tiny",
         "A sphere lamp of a milliradian: its solid angle survives single precision",
         "Howell B-46",
@@ -249,7 +214,7 @@ def _delta_and_environment() -> list[Case]:
     position = (2.0 * math.sin(math.pi / 3), 1.0, 0.0)
     bright, dim = point_light(position, 10.0), point_light((0, 2, 0), 0.4)
     irradiance = 10.0 * 0.5 / 4.0
-    rows = _rows(
+    rows = rows_of(
         "point",
         "A point light at 60 degrees, E = I cos / d^2",
         "inverse square law",
@@ -258,7 +223,7 @@ def _delta_and_environment() -> list[Case]:
         (*SAMPLED, "reference", "direct"),
         [bright],
     )
-    rows += _rows(
+    rows += rows_of(
         "two-points",
         "Two point lights of unequal power: the choice of a light is paid back",
         "inverse square law",
@@ -270,7 +235,7 @@ def _delta_and_environment() -> list[Case]:
     sources = [disk((0, 2, 0), DOWN, 1.0, lamp()), sphere((-1.5, 1.5, 0), 0.5, lamp(3.0))]
     total = form_factors.disk_on_axis(1.0, 2.0) + irradiance / math.pi
     total += 3.0 * form_factors.sphere(0.5, math.hypot(1.5, 1.5), math.pi / 4)
-    rows += _rows(
+    rows += rows_of(
         "three-kinds",
         "A disk, a sphere and a point light together: light adds up",
         "sum of the closed forms",
@@ -295,4 +260,12 @@ def _delta_and_environment() -> list[Case]:
 
 def cases() -> list[Case]:
     """All cases of this chapter."""
-    return [*_disks(), *_rectangles(), *_triangles(), *_cornell(), *_spheres(), *_delta_and_environment()]
+    return [
+        *_disks(),
+        *_rectangles(),
+        *_triangles(),
+        *_cornell(),
+        *_spheres(),
+        *_delta_and_environment(),
+        *lamps.cases(),
+    ]

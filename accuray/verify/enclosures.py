@@ -206,12 +206,11 @@ def _exchange() -> list[Case]:
 
 
 def _phases() -> list[Case]:
-    """Lambert's sphere under parallel light: a point light a million radii away, irradiance 1 at the sphere."""
+    """Lambert's sphere under parallel light of irradiance 1."""
     rows = []
-    far = 1e6
     for degrees in (0, 60, 90, 120):
         phase = math.radians(degrees)
-        sun = point_light((far * math.sin(phase), far * math.cos(phase), 0.0), far**2)
+        sun = {"type": "directional", "direction": [-math.sin(phase), -math.cos(phase), 0.0]}
         scene = assemble([sphere((0, 0, 0), 1.0, diffuse(0.5))], [sun], direct_only("mis"))
         probe = RayProbe(scene, parallel_beam(DOWN, 1.0), factor=2.0, spp=4, start=64, group=4096)
         sentence = f"Lambert's sphere at a phase angle of {degrees} degrees"

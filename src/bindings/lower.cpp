@@ -1,5 +1,6 @@
 // The scene builder and the RGB table.
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/tuple.h>
 
 #include "bindings/bindings.h"
 #include "lower/builder.h"
@@ -153,6 +154,19 @@ void bind_textures(nb::class_<SceneBuilder>& builder) {
           "texture"_a, "scale"_a);
 }
 
+// Vertical angles (V,), horizontal angles (H,), candelas (H * V,).
+using PhotometryArrays = std::tuple<Column<double>, Column<double>, Column<double>>;
+
+Photometry to_photometry(const std::optional<PhotometryArrays>& arrays) {
+  if (!arrays) return {};
+  const auto& [vertical, horizontal, candela] = *arrays;
+  Photometry photometry{to_vector(vertical), to_vector(horizontal), to_vector(candela)};
+  const size_t rows = photometry.horizontal.size();
+  if (photometry.vertical.size() < 2 || rows == 0 || photometry.candela.size() != rows * photometry.vertical.size())
+    throw std::invalid_argument("a photometry has one candela for each pair of angles");
+  return photometry;
+}
+
 void bind_parts(nb::class_<SceneBuilder>& builder) {
   builder
       .def(
@@ -188,10 +202,11 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
       .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(), "material"_a.none())
       .def(
           "add_light",
-          [](SceneBuilder& b, const std::string& type, const nb::dict& values, SpectrumRef emission) {
-            b.add_light(type, to_values(values), emission);
+          [](SceneBuilder& b, const std::string& type, const nb::dict& values, SpectrumRef emission,
+             const std::optional<PhotometryArrays>& photometry) {
+            b.add_light(type, to_values(values), emission, to_photometry(photometry));
           },
-          "type"_a, "values"_a, "emission"_a)
+          "type"_a, "values"_a, "emission"_a, "photometry"_a.none())
       .def(
           "set_camera",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, double width, double height) {
@@ -269,6 +284,13 @@ void bind_lower(nb::module_& module) {
   bind_spectra(builder);
   bind_textures(builder);
   bind_parts(builder);
+
+  lower.def(
+      "lamp_power",
+      [](const std::string& type, const nb::dict& values, const std::optional<PhotometryArrays>& photometry) {
+        return lamp_power(type, to_values(values), to_photometry(photometry));
+      },
+      "type"_a, "values"_a, "photometry"_a.none(), "Flux of a named light that is not infinite per unit of emission.");
 
   lower.attr("SOLIDS") = names_of(Solids{});
   lower.def("tessellate", &tessellated, "type"_a, "values"_a, "newell"_a.none(),

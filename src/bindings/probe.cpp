@@ -175,8 +175,19 @@ nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<flo
   return to_numpy(std::move(pdf), 0);
 }
 
+// Flux of a light per unit of its emission; `scene_radius` counts for infinite ones.
+double light_power(const LoadedScene& scene, uint32_t light, float scene_radius) {
+  const SceneView& view = scene.accel.view();
+  if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
+  const Tagged record = view.lights[light].light;
+  return dispatch(Lights{}, record.tag, [&](auto type) {
+    return static_cast<double>(view.as<typename decltype(type)::type>(record).power_per_radiance(scene_radius));
+  });
+}
+
 nb::list light_names(const LoadedScene& scene) {
-  constexpr const char* names[] = {"point", "constant", "triangle", "quad", "sphere", "disk"};
+  constexpr const char* names[] = {"point", "constant", "triangle",    "quad", "sphere",
+                                   "disk",  "spot",     "directional", "ies"};
   static_assert(Lights::size == std::size(names));
   nb::list result;
   const SceneView& view = scene.accel.view();
@@ -325,6 +336,7 @@ void bind_probe(nb::module_& module) {
   probe.def("footprints", &footprints, "scene"_a, "width"_a, "height"_a, "pixels"_a);
   probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);
   probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);
+  probe.def("light_power", &light_power, "scene"_a, "light"_a, "scene_radius"_a);
   probe.def("light_names", &light_names, "scene"_a);
   probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false);
   probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a);

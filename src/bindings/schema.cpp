@@ -51,6 +51,7 @@ nb::dict describe(const Param& param) {
   d["group"] = param.group;
   d["texturable"] = param.texturable;
   d["untextured"] = param.untextured;
+  d["takes_flux"] = param.takes_flux;
   d["animatable"] = param.animatable;
   d["doc"] = param.doc;
   return d;

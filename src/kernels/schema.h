@@ -45,6 +45,7 @@ struct Param {
   bool required = false;
   bool texturable = false;      // takes a texture; a real's member is then a RealRef
   const char* untextured = "";  // why it takes none, where one might be expected
+  bool takes_flux = false;      // an emission: the flux of the whole emitter may stand for it
   bool animatable = false;
   uint32_t member = no_member;  // byte offset in the type's struct
 };

@@ -310,7 +310,8 @@ uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord&
   return add_mesh_lights(world, material, place);
 }
 
-void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission) {
+void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission,
+                             const Photometry& photometry) {
   if (type == ConstantLight::name) {
     if (root_.environment != none) throw std::invalid_argument("a scene has at most one environment light");
     root_.environment = lights_.add(ConstantLight{}, emission, true);
@@ -318,8 +319,8 @@ void SceneBuilder::add_light(std::string_view type, const Values& values, Spectr
   }
   const uint32_t tag = tag_named(NamedLights{}, type);
   dispatch(NamedLights{}, tag, [&](auto named) {
-    using L = typename decltype(named)::type;
-    return lights_.add(struct_of<L>(values), emission, false);
+    const auto lamp = lamp_of(named, values, photometry);
+    return lights_.add(lamp.light, emission, false, {none, none, 0}, lamp.table);
   });
 }
 

@@ -13,6 +13,7 @@
 #include "lower/block.h"
 #include "lower/bounds.h"
 #include "lower/cameras.h"
+#include "lower/lamps.h"
 #include "lower/lights.h"
 #include "lower/parameters.h"
 #include "lower/spectra.h"
@@ -49,7 +50,7 @@ class SceneBuilder {
                      uint32_t material, bool prototype);
   void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
                     std::optional<uint32_t> material);
-  void add_light(std::string_view type, const Values& values, SpectrumRef emission);
+  void add_light(std::string_view type, const Values& values, SpectrumRef emission, const Photometry& photometry);
 
   void set_camera(std::string_view type, const Values& values, const FilmSize& film);
   void set_filter(std::string_view type, const Values& values);

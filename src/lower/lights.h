@@ -1,6 +1,7 @@
 // Lights of the lowered scene: named ones, and those that come from surfaces whose material emits.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "kernels/light/list.h"
@@ -13,10 +14,11 @@ class LightTable {
  public:
   LightTable(ParameterPool& pool, const SpectrumPool& spectra) : pool_(pool), spectra_(spectra) {}
 
-  // `place`: of a light that is a surface.
+  // `place`: of a light that is a surface. `table`: numbers that lie behind the light in the pool.
   template <class L>
-  uint32_t add(const L& light, SpectrumRef emission, bool both_sides, LightPlace place = {none, none, 0}) {
-    records_.push_back({{tag_of<L>(Lights{}), pool_.add(light)}, emission, both_sides ? 1u : 0u});
+  uint32_t add(const L& light, SpectrumRef emission, bool both_sides, LightPlace place = {none, none, 0},
+               std::span<const float> table = {}) {
+    records_.push_back({{tag_of<L>(Lights{}), pool_.add(light, table)}, emission, both_sides ? 1u : 0u});
     places_.push_back(place);
     return static_cast<uint32_t>(records_.size() - 1);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -119,11 +120,14 @@ T struct_of(const Values& values) {
 // The pool of the types' structs, in 32-bit words; each struct starts at a multiple of 16 bytes.
 class ParameterPool {
  public:
+  // `table`: numbers that lie right behind the struct.
   template <class T>
-  uint32_t add(const T& value) {
+  uint32_t add(const T& value, std::span<const float> table = {}) {
     const size_t offset = (words_.size() + 3) / 4 * 4;
-    words_.resize(offset + (sizeof(T) + 3) / 4);
+    const size_t behind = offset + (sizeof(T) + 3) / 4;
+    words_.resize(behind + table.size());
     std::memcpy(words_.data() + offset, &value, sizeof(T));
+    if (!table.empty()) std::memcpy(words_.data() + behind, table.data(), table.size_bytes());
     return static_cast<uint32_t>(offset);
   }
   const std::vector<uint32_t>& words() const { return words_; }

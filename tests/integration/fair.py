@@ -7,6 +7,7 @@ table is taken as it is.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -58,15 +59,23 @@ def glowing(scene: accuray.Scene, material: str, radiance: float) -> accuray.Sce
 
 
 def brightened(scene: accuray.Scene, light: str, factor: float) -> accuray.Scene:
-    """A constant environment with `factor` times its radiance."""
+    """An infinite light with `factor` times its radiance or irradiance."""
     table = scene.lights[light]
-    radiance = replace(table["radiance"], scale=table["radiance"].scale * factor)
-    return replace(scene, lights=scene.lights | {light: table | {"radiance": radiance}})
+    key = next(key for key, value in table.items() if isinstance(value, Spectrum))
+    brighter = replace(table[key], scale=table[key].scale * factor)
+    return replace(scene, lights=scene.lights | {light: table | {key: brighter}})
 
 
 def glowing_under(scene: accuray.Scene, lamp: str, factor: float, material: str, radiance: float) -> accuray.Scene:
     """The lamp `enlarged`, and the material `glowing`."""
     return glowing(enlarged(scene, lamp, factor), material, radiance)
+
+
+def widened(scene: accuray.Scene, outer: float) -> accuray.Scene:
+    """Spot lights with cones of this half-angle in degrees, whose edges begin in the middle."""
+    cone = {"outer_angle": math.radians(outer), "inner_angle": math.radians(0.1 * outer)}
+    lights = {name: light | cone if light["type"] == "spot" else light for name, light in scene.lights.items()}
+    return replace(scene, lights=lights)
 
 
 def dimmed(scene: accuray.Scene, names: tuple[str, ...], factor: float) -> accuray.Scene:
@@ -121,6 +130,7 @@ FAIR = {
     ),
     "furnace": Fair("as it is: its light comes from everywhere"),
     "glass-and-texture": Fair("the wall glows", partial(glowing, material="wall", radiance=1.0)),
+    "ies": Fair("the moon 20 times as bright", partial(brightened, light="moon", factor=20)),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "mipmaps": Fair("as it is: its light comes from everywhere"),
     "openpbr": Fair("the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3.0)),
@@ -131,6 +141,7 @@ FAIR = {
     "spheres": Fair(
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
+    "spot": Fair("cones of 70 degrees, so that every lamp lights most of the stage", partial(widened, outer=70.0)),
     "teapot": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),
     "thin-film": Fair("the ground glows", partial(glowing, material="ground", radiance=0.2)),
     "torus-knot": Fair("the room glows", partial(glowing, material="plaster", radiance=1.0)),

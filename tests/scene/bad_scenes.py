@@ -355,7 +355,7 @@ SPECTRA = [
     emission("illuminant", '"D66"', '"D66" is not a known spectrum or illuminant', 'did you mean "D65"'),
     emission("watts", '"10 W/sr"', '"10 W/sr" has the wrong unit', "W/(m^2 sr nm)"),
     emission("too-large", '"1e400 W/(m^2 sr nm)"', "too large a number"),
-    emission("lumen", '"800 lm"', '"800 lm" has the wrong unit'),
+    emission("lux", '"800 lx"', '"800 lx" has the wrong unit', "cd/m^2"),
     emission("cold", '"5 K"', '"5 K" is out of range', "500 to 100000 K"),
     emission("black-normalized", "{ value = 0, normalize = true }", "no visible light"),
     emission("luminance-unit", '{ value = 1, luminance = "3 m" }', "luminance", '"3 m" has the wrong unit', "cd/m^2"),

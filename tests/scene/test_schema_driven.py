@@ -92,7 +92,10 @@ def numeric_fields() -> list[Any]:
 
 
 #: One alternative of the sets that have no default.
-NEEDED: dict[str, dict[str, Any]] = {"conductor": {"eta": 1.0, "k": 1.0}}
+NEEDED: dict[str, dict[str, Any]] = {
+    "conductor": {"eta": 1.0, "k": 1.0},
+    "ies": {"file": "builtin:wall_washer.ies"},
+}
 
 
 def scene_with(section: str, type_: Type, param: Param, value: Any) -> dict[str, Any]:

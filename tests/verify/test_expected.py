@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from accuray.verify import all_cases, cameras, colorimetry, form_factors, optics, refraction
+from accuray.verify import all_cases, cameras, colorimetry, form_factors, lamps, optics, refraction
 
 EXACT = 1e-9
 
@@ -62,6 +62,12 @@ def test_polygon_formula_agrees_with_the_rectangle_formula() -> None:
 
 def test_point_light() -> None:
     close(expected()["C1.point/mis"][0] * math.pi / 0.5, 1.25)
+
+
+def test_spot_light() -> None:
+    reference = figures()["spot_power_smoothstep_40_60_I10"]["closed"]
+    close(10.0 * lamps.SPOT_STERADIANS, reference)
+    close(expected()["C1.spot-power/mis"][0] * 8.0 * math.pi**2, reference)
 
 
 @pytest.mark.parametrize(

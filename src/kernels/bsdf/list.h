@@ -27,6 +27,7 @@ struct MaterialCommon {
                             .unit = "W/(m^2 sr nm)",
                             .role = "emission",
                             .texturable = true,
+                            .takes_flux = true,
                             .animatable = true},
                       Param{.name = "emission_sides",
                             .kind = Kind::choice,

@@ -1,7 +1,7 @@
 // A point that sends the same radiant intensity in all directions.
 #pragma once
 
-#include "kernels/light/light.h"
+#include "kernels/light/aim.h"
 
 namespace accuray {
 
@@ -26,16 +26,11 @@ struct PointLight {
                             .low = 0,
                             .unit = "W/(sr nm)",
                             .role = "emission",
+                            .takes_flux = true,
                             .animatable = true});
   }
 
-  LightSample sample(Vec3 reference, Vec2) const {
-    LightSample s = sample_towards(reference, position, {0, 0, 0}, {0, 0, 0}, 1.0f);
-    if (s.distance == 0.0f) return no_light();
-    s.pdf = 1.0f;
-    s.scale = 1.0f / (s.distance * s.distance);
-    return s;
-  }
+  LightSample sample(Vec3 reference, Vec2) const { return sample_point(reference, position); }
   float pdf(Vec3, Vec3, const Surface&) const { return 0.0f; }
   float power_per_radiance(float) const { return 4.0f * pi; }
 };
