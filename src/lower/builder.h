@@ -13,8 +13,10 @@
 #include "lower/block.h"
 #include "lower/bounds.h"
 #include "lower/cameras.h"
+#include "lower/environments.h"
 #include "lower/lights.h"
 #include "lower/parameters.h"
+#include "lower/sky_model.h"
 #include "lower/spectra.h"
 #include "lower/textures.h"
 #include "lower/transform.h"
@@ -50,6 +52,9 @@ class SceneBuilder {
   void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
                     std::optional<uint32_t> material);
   void add_light(std::string_view type, const Values& values, SpectrumRef emission);
+  void add_environment(const Values& values, const std::optional<Matrix>& transform, const PictureUse& use);
+  // A sky, and its sun as a light of its own.
+  void add_sky(const Values& values, SpectrumRef albedo, const SkyData& data);
 
   void set_camera(std::string_view type, const Values& values, const FilmSize& film);
   void set_filter(std::string_view type, const Values& values);
@@ -78,6 +83,10 @@ class SceneBuilder {
   template <class L>
   uint32_t add_surface_light(const L& light, const MaterialRecord& material, LightPlace place);
   uint32_t instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material);
+  void add_constant(const Values& values, SpectrumRef emission);
+  void add_sun(const Values& values, SpectrumRef emission);
+  template <class L>
+  void add_infinite(const L& light, SpectrumRef emission, const Values& values);
   float scene_radius() const;
   // The scene as far as textures read it; good until something is added.
   SceneView draft(const std::vector<const uint8_t*>& sections) const;
@@ -87,12 +96,15 @@ class SceneBuilder {
   ParameterPool pool_;
   std::vector<Section> bulk_;  // sections 1, 2, ...
   TexturePool textures_;
+  EnvironmentPool environments_;
   LightTable lights_;
   Root root_{};
   std::vector<MaterialRecord> materials_;
   std::vector<InteriorRecord> interiors_;
   std::vector<GeometryRecord> geometries_;
   std::vector<InstanceRecord> instances_;
+  std::vector<InfiniteRecord> infinite_;
+  bool hide_infinite_ = false;
   std::vector<uint32_t> light_of_primitive_;
   std::vector<uint32_t> lights_of_instance_;
   std::vector<Bounds> bounds_;  // of each geometry, in its own space

@@ -8,6 +8,9 @@
 //   - at(u) of a light that is a surface is a point chosen uniformly by area.
 //   - The radiance arriving along the sample is the light's emission times `scale`: 1 for surfaces and environments,
 //     1/d^2 for a point, 0 on a side that does not emit.
+//   - `infinite` lights lie beyond everything; a sample's `point` is its direction. Those whose radiance differs from
+//     direction to direction have radiance(scene, emission, wi, wl). Lights that read tables take the scene as the
+//     first argument of sample() and pdf().
 #pragma once
 
 #include "kernels/geometry/surface.h"
@@ -17,12 +20,22 @@ namespace accuray {
 
 struct LightSample {
   Vec3 wi;      // unit, from the reference to the light
-  Vec3 point;   // on the light, if `distance` is finite
+  Vec3 point;   // on the light; `wi` if the distance is infinite
   Vec3 error;   // bound of the point's error
   Vec3 normal;  // of the light there; zero for points
   float distance;
   float pdf;
   float scale;
+};
+
+// Where a light is and where it sends light (Conty Estevez and Kulla 2018): directions within `cos_spread` of the axis
+// are normals, and light leaves within `cos_emission` of a normal.
+struct LightBounds {
+  Vec3 low;
+  Vec3 high;
+  Vec3 axis;
+  float cos_spread;
+  float cos_emission;
 };
 
 inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0.0f, 0.0f, 0.0f}; }
@@ -31,6 +44,19 @@ inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 
 // area from afar, where that is as good and cheaper. The same function of the reference decides in sample() and pdf().
 inline bool is_near(Vec3 reference, Vec3 middle, float radius_squared) {
   return length_squared(middle - reference) < 16.0f * radius_squared;
+}
+
+// A sample of a light beyond everything.
+inline LightSample sample_from_afar(Vec3 wi, float pdf) {
+  return {wi, wi, {0, 0, 0}, {0, 0, 0}, infinity, pdf, pdf > 0.0f ? 1.0f : 0.0f};
+}
+
+// The parameter of infinite lights that hides them.
+constexpr Param visible_param() {
+  return {.name = "visible",
+          .kind = Kind::boolean,
+          .doc = "Whether the camera sees it directly. It lights the scene, mirrors and glass either way.",
+          .preset = "true"};
 }
 
 // Solid angles beyond these bounds (sr) are left to area sampling too: the spherical formulas err by 1e-7 sr.
