@@ -62,6 +62,8 @@ SHOTS = {
         },
     ),
     "depth-of-field": Shot("depth-of-field"),
+    "environment": Shot("environment"),
+    "sunny": Shot("sunny"),
     "glass-and-texture": Shot("glass-and-texture"),
     "cornell-box": Shot("cornell-box"),
     "mirror-and-glass": Shot("mirror-and-glass"),

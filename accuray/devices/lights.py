@@ -48,6 +48,10 @@ class LightLowering:
         elif light["type"] == "sky":
             coefficients = (np.array(numbers) for numbers in data.sky())
             self._builder.add_sky(values, values["ground_albedo"], *coefficients)
+        elif light["type"] == "sun":
+            irradiance = light["irradiance"]
+            emission = self._spectrum(light["radiance"] if irradiance is None else irradiance)
+            self._builder.add_sun(values, emission, irradiance is not None)
         else:
             emission = next(value for value in light.values() if isinstance(value, Spectrum))
             self._builder.add_light(light["type"], values, self._spectrum(emission))

@@ -193,6 +193,12 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
           },
           "type"_a, "values"_a, "emission"_a)
       .def(
+          "add_sun",
+          [](SceneBuilder& b, const nb::dict& values, SpectrumRef emission, bool is_irradiance) {
+            b.add_sun(to_values(values), emission, is_irradiance);
+          },
+          "values"_a, "emission"_a, "is_irradiance"_a)
+      .def(
           "add_environment",
           [](SceneBuilder& b, const nb::dict& values, const OptionalMatrix& transform, uint32_t picture, bool srgb) {
             b.add_environment(to_values(values), transform, {picture, srgb});

@@ -313,7 +313,6 @@ uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord&
 
 void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission) {
   if (type == ConstantLight::name) return add_constant(values, emission);
-  if (type == SunLight::name) return add_sun(values, emission);
   const uint32_t tag = tag_named(NamedLights{}, type);
   dispatch(NamedLights{}, tag, [&](auto named) {
     using L = typename decltype(named)::type;

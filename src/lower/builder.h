@@ -52,6 +52,8 @@ class SceneBuilder {
   void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
                     std::optional<uint32_t> material);
   void add_light(std::string_view type, const Values& values, SpectrumRef emission);
+  // `emission`: the disc's radiance, or its irradiance on a plane that faces it.
+  void add_sun(const Values& values, SpectrumRef emission, bool is_irradiance);
   void add_environment(const Values& values, const std::optional<Matrix>& transform, const PictureUse& use);
   // A sky, and its sun as a light of its own.
   void add_sky(const Values& values, SpectrumRef albedo, const SkyData& data);
@@ -84,7 +86,6 @@ class SceneBuilder {
   uint32_t add_surface_light(const L& light, const MaterialRecord& material, LightPlace place);
   uint32_t instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material);
   void add_constant(const Values& values, SpectrumRef emission);
-  void add_sun(const Values& values, SpectrumRef emission);
   template <class L>
   void add_infinite(const L& light, SpectrumRef emission, const Values& values);
   float scene_radius() const;

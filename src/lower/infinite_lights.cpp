@@ -11,10 +11,10 @@ namespace {
 
 // Towards the sun, from its direction or its angles; a unit vector.
 std::array<double, 3> sun_direction(const Values& values) {
-  if (values.contains("direction")) {
-    const auto given = vec_of(values, "direction");
+  if (values.contains("towards")) {
+    const auto given = vec_of(values, "towards");
     const double size = length(given);
-    if (!(size > 0.0)) throw BadParameter("direction", "has no direction: allowed is any length but zero");
+    if (!(size > 0.0)) throw BadParameter("towards", "has no direction: allowed is any length but zero");
     return {given[0] / size, given[1] / size, given[2] / size};
   }
   const SinCosDouble up = sincos(number_of(values, "elevation"));
@@ -76,11 +76,9 @@ void SceneBuilder::add_constant(const Values& values, SpectrumRef emission) {
   add_infinite(ConstantLight{}, emission, values);
 }
 
-void SceneBuilder::add_sun(const Values& values, SpectrumRef emission) {
+void SceneBuilder::add_sun(const Values& values, SpectrumRef emission, bool is_irradiance) {
   const SunLight sun = sun_disc(sun_direction(values), values, none);
-  if (values.contains("irradiance")) {
-    emission = spectra_.scaled(emission, 1.0 / static_cast<double>(pi * sun.sine_squared()));
-  }
+  if (is_irradiance) emission = spectra_.scaled(emission, 1.0 / static_cast<double>(pi * sun.sine_squared()));
   add_infinite(sun, emission, values);
 }
 
@@ -95,7 +93,7 @@ void SceneBuilder::add_environment(const Values& values, const std::optional<Mat
 void SceneBuilder::add_sky(const Values& values, SpectrumRef albedo, const SkyData& data) {
   const std::array<double, 3> direction = sun_direction(values);
   if (direction[1] < 0.0) {
-    throw BadParameter(values.contains("direction") ? "direction" : "elevation",
+    throw BadParameter(values.contains("towards") ? "towards" : "elevation",
                        "has the sun below the horizon, where the model ends: allowed is 0 to 90 degrees above it");
   }
   const Vec3 sun = to_vec3(direction);

@@ -129,7 +129,7 @@ def test_the_illuminance_of_the_sun(strategy: str, tilt: float) -> None:
     aside = np.cross(towards, [0, 0, 1.0])
     angle = math.radians(tilt)
     normal = math.cos(angle) * towards + math.sin(angle) * aside / np.linalg.norm(aside)
-    sun = {"type": "sun", "direction": [1, 2, -0.5], "irradiance": {"illuminant": "D65", "scale": 1.3}}
+    sun = {"type": "sun", "towards": [1, 2, -0.5], "irradiance": {"illuminant": "D65", "scale": 1.3}}
     if strategy == "reference":  # finds a disc only if it is large: it touches the horizon at a tilt of 60 degrees
         sun["angular_diameter"] = 60
     scene = floor_under({"sun": sun}, strategy, tuple(normal))

@@ -86,7 +86,7 @@ CASES = [
     ),
     Case("mirrored", "environment", environment(noise(8, 16), transform=MIRROR), axes=np.diag([-1.0, 1.0, 1.0])),
     Case("sun", "sun", {"type": "sun", "elevation": 30, "azimuth": 100, "irradiance": 2}),
-    Case("low-sun", "sun", {"type": "sun", "direction": [3, -0.1, 1], "radiance": 5, "angular_diameter": 8}),
+    Case("low-sun", "sun", {"type": "sun", "towards": [3, -0.1, 1], "radiance": 5, "angular_diameter": 8}),
     Case("half-sky", "sun", {"type": "sun", "elevation": 90, "angular_diameter": 180}),
     Case("sky", "sky", {"type": "sky", "elevation": 40, "azimuth": 30}),
     Case("haze", "sky", {"type": "sky", "turbidity": 10, "elevation": 5, "ground_albedo": [0.1, 0.6, 0.2]}),
@@ -202,8 +202,8 @@ def disc_test(case: Case, core: Any) -> tuple[Any, Any, Plane]:
 
 
 def sun_towards(light: Description) -> FloatArray:
-    if "direction" in light:
-        return unit(*light["direction"])
+    if "towards" in light:
+        return unit(*light["towards"])
     e, a = (math.radians(light.get(key, default)) for key, default in (("elevation", 45), ("azimuth", 0)))
     return np.array([math.cos(e) * math.sin(a), math.sin(e), -math.cos(e) * math.cos(a)])
 

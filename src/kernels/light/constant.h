@@ -25,7 +25,7 @@ struct ConstantLight {
                       visible_param());
   }
 
-  LightSample sample(Vec3, Vec2 u) const { return sample_from_afar(square_to_sphere(u), uniform_sphere_pdf); }
+  LightSample sample(Vec3, Vec2 u) const { return sample_from_afar({square_to_sphere(u), uniform_sphere_pdf}); }
   float pdf(Vec3, Vec3, const Surface&) const { return uniform_sphere_pdf; }
   // Flux into a sphere around the scene.
   float power_per_radiance(float scene_radius) const { return 4.0f * pi * pi * scene_radius * scene_radius; }

@@ -73,12 +73,4 @@ struct DirectionTable {
   }
 };
 
-// Never inlined: most scenes have no such table.
-ACCURAY_NOINLINE inline Vec3 drawn(const SceneView& scene, const DirectionTable& table, Vec2 u) {
-  return table.sample(scene, u);
-}
-ACCURAY_NOINLINE inline float density(const SceneView& scene, const DirectionTable& table, Vec3 direction) {
-  return table.pdf(scene, direction);
-}
-
 }  // namespace accuray

@@ -56,13 +56,13 @@ struct EnvironmentLight {
         visible_param());
   }
 
-  LightSample sample(const SceneView& scene, Vec3, Vec2 u) const {
-    const Vec3 wi = axes.to_world(drawn(scene, table, u));
-    return sample_from_afar(wi, density(scene, table, axes.to_local(wi)));
+  Drawn draw(const SceneView& scene, Vec2 u) const {
+    const Vec3 wi = axes.to_world(table.sample(scene, u));
+    return {wi, density(scene, wi)};
   }
-  float pdf(const SceneView& scene, Vec3, Vec3 wi, const Surface&) const {
-    return density(scene, table, axes.to_local(wi));
-  }
+  float density(const SceneView& scene, Vec3 wi) const { return table.pdf(scene, axes.to_local(wi)); }
+  LightSample sample(const SceneView& scene, Vec3, Vec2 u) const { return sample_from_afar(drawn_by(*this, scene, u)); }
+  float pdf(const SceneView& scene, Vec3, Vec3 wi, const Surface&) const { return density_of(*this, scene, wi); }
   Spectrum radiance(const SceneView& scene, const SpectrumRecord& emission, Vec3 wi, const Wavelengths& wl) const {
     const Vec2 place = map_place(axes.to_local(wi));
     TexturePoint point{};

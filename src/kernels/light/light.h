@@ -46,9 +46,24 @@ inline bool is_near(Vec3 reference, Vec3 middle, float radius_squared) {
   return length_squared(middle - reference) < 16.0f * radius_squared;
 }
 
+// A direction drawn by an infinite light. Its draw() and density() are never inlined: most scenes have no such light,
+// and threads of a GPU little memory.
+struct Drawn {
+  Vec3 wi;
+  float pdf;
+};
+template <class L>
+ACCURAY_NOINLINE inline Drawn drawn_by(const L& light, const SceneView& scene, Vec2 u) {
+  return light.draw(scene, u);
+}
+template <class L>
+ACCURAY_NOINLINE inline float density_of(const L& light, const SceneView& scene, Vec3 wi) {
+  return light.density(scene, wi);
+}
+
 // A sample of a light beyond everything.
-inline LightSample sample_from_afar(Vec3 wi, float pdf) {
-  return {wi, wi, {0, 0, 0}, {0, 0, 0}, infinity, pdf, pdf > 0.0f ? 1.0f : 0.0f};
+inline LightSample sample_from_afar(Drawn drawn) {
+  return {drawn.wi, drawn.wi, {0, 0, 0}, {0, 0, 0}, infinity, drawn.pdf, drawn.pdf > 0.0f ? 1.0f : 0.0f};
 }
 
 // The parameter of infinite lights that hides them.

@@ -70,11 +70,13 @@ struct SkyLight {
                              visible_param()));
   }
 
-  LightSample sample(const SceneView& scene, Vec3, Vec2 u) const {
-    const Vec3 wi = drawn(scene, table, u);
-    return sample_from_afar(wi, density(scene, table, wi));
+  Drawn draw(const SceneView& scene, Vec2 u) const {
+    const Vec3 wi = table.sample(scene, u);
+    return {wi, density(scene, wi)};
   }
-  float pdf(const SceneView& scene, Vec3, Vec3 wi, const Surface&) const { return density(scene, table, wi); }
+  float density(const SceneView& scene, Vec3 wi) const { return table.pdf(scene, wi); }
+  LightSample sample(const SceneView& scene, Vec3, Vec2 u) const { return sample_from_afar(drawn_by(*this, scene, u)); }
+  float pdf(const SceneView& scene, Vec3, Vec3 wi, const Surface&) const { return density_of(*this, scene, wi); }
   Spectrum radiance(const SceneView& scene, const SpectrumRecord& emission, Vec3 wi, const Wavelengths& wl) const {
     if (wi.y <= 0.0f) return lanes(0.0f);
     const SkyDirection direction = SkyDirection::of(wi, sun);

@@ -9,10 +9,10 @@ namespace accuray {
 // Where the sun stands, for the lights that have one.
 constexpr auto sun_position_params() {
   return param_list(
-      Param{.name = "direction",
+      Param{.name = "towards",
             .kind = Kind::vec,
-            .doc = "Towards the sun, of any length.",
-            .group = "position:direction"},
+            .doc = "Direction to the sun, of any length.",
+            .group = "position:vector"},
       Param{.name = "elevation",
             .kind = Kind::real,
             .doc = "Angle of the sun above the horizon.",
@@ -83,14 +83,16 @@ struct SunLight {
   // sin^2 of its angular radius; irradiance is pi times that for each unit of radiance, up to a hemisphere.
   float sine_squared() const { return height * (2.0f - height); }
 
-  LightSample sample(Vec3, Vec2 u) const {
+  Drawn draw(const SceneView&, Vec2 u) const {
     const float drop = u.x * height;
     const float around = sqrt(max(0.0f, drop * (2.0f - drop)));
     const SinCos phi = sincos(2.0f * pi * u.y);
     const Vec3 wi = Frame::around(direction).to_world({around * phi.cos, around * phi.sin, 1.0f - drop});
-    return sample_from_afar(wi, 1.0f / solid_angle());
+    return {wi, 1.0f / solid_angle()};
   }
-  float pdf(Vec3, Vec3 wi, const Surface&) const { return covers(wi) ? 1.0f / solid_angle() : 0.0f; }
+  float density(const SceneView&, Vec3 wi) const { return covers(wi) ? 1.0f / solid_angle() : 0.0f; }
+  LightSample sample(const SceneView& scene, Vec3, Vec2 u) const { return sample_from_afar(drawn_by(*this, scene, u)); }
+  float pdf(const SceneView& scene, Vec3, Vec3 wi, const Surface&) const { return density_of(*this, scene, wi); }
 
   // Limb darkening is a polynomial in the cosine at which the sun's own surface is seen (Hosek and Wilkie 2013).
   Spectrum radiance(const SceneView& scene, const SpectrumRecord& emission, Vec3 wi, const Wavelengths& wl) const {
