@@ -70,6 +70,8 @@ SHOTS = {
     "thin-film": Shot("thin-film"),
     "openpbr": Shot("openpbr"),
     "depth-of-field": Shot("depth-of-field"),
+    "environment": Shot("environment"),
+    "sunny": Shot("sunny"),
     "glass-and-texture": Shot("glass-and-texture"),
     "cornell-box": Shot("cornell-box"),
     "mirror-and-glass": Shot("mirror-and-glass"),

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the pictures in scenes/textures: bricks in colour, their normal map, a leaf with its outline as alpha, and a
-window of coloured glass.
+"""Makes the pictures in scenes/textures: bricks in colour, their normal map, a leaf with its outline as alpha, a
+window of coloured glass, and an evening all around as an environment map.
 
     python tools/make_textures.py
 
@@ -96,6 +96,37 @@ def window(width: int = 160, height: int = 240) -> FloatArray:
     return inside
 
 
+def evening(width: int = 256, height: int = 128) -> FloatArray:
+    """An environment (height, width, 3), linear: a low sun behind bands of cloud, hills around."""
+    y, x = (np.mgrid[0:height, 0:width] + 0.5) / [[[height]], [[width]]]
+    up, around = np.pi * (0.5 - y), 2.0 * np.pi * (x - 0.5)
+    sun_up, sun_around = np.radians(9.0), np.radians(62.0)
+    cosine = np.sin(up) * np.sin(sun_up) + np.cos(up) * np.cos(sun_up) * np.cos(around - sun_around)
+    away = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    low = np.exp(-np.maximum(up, 0.0) / 0.22)[..., np.newaxis]
+    sky = (1.0 - low) * np.array([0.10, 0.19, 0.42]) + low * np.array([0.75, 0.42, 0.24])
+    sky += np.exp(-away / 14.0)[..., np.newaxis] * np.array([3.0, 1.5, 0.5])
+    waves = sum(np.sin(k * around + 9.0 * k * up + k * k) / k for k in (2, 3, 5, 8)) + 4.0 * np.sin(19.0 * up)
+    cloud = np.clip(0.25 * waves - 0.35, 0.0, 1.0) * np.clip(4.0 * up, 0.0, 1.0) * np.clip(2.4 - 2.2 * up, 0.0, 1.0)
+    lit = np.array([0.35, 0.30, 0.36]) + np.exp(-away / 30.0)[..., np.newaxis] * np.array([2.2, 0.9, 0.45])
+    sky += cloud[..., np.newaxis] * (lit - sky)
+    sky += np.clip(4.5 - away, 0.0, 1.0)[..., np.newaxis] * np.array([150.0, 90.0, 38.0])
+    hills = 0.02 + 0.03 * np.sin(3.0 * around) + 0.02 * np.sin(7.0 * around + 1.0)
+    ground = np.array([0.075, 0.06, 0.045]) * (1.0 + np.clip(-up, 0.0, 1.0))[..., np.newaxis]
+    share = np.clip((up - hills) * height / np.pi + 0.5, 0.0, 1.0)[..., np.newaxis]
+    result: FloatArray = ground + share * (sky - ground)
+    return result
+
+
+def write_radiance(name: str, pixels: FloatArray) -> None:
+    """Stores numbers in half precision."""
+    spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], "half")
+    spec.attribute("compression", "piz")
+    output: Any = oiio.ImageOutput.create(name)
+    if not (output.open(str(FOLDER / name), spec) and output.write_image(pixels.astype(np.float32)) and output.close()):
+        raise SystemExit(output.geterror())
+
+
 def write(name: str, pixels: FloatArray) -> None:
     """Stores numbers from 0 to 1 with 8 bits."""
     stored: NDArray[Any] = np.floor(pixels * 255.0 + 0.5).astype(np.uint8)
@@ -115,6 +146,7 @@ def main() -> None:
     write("bricks-normal.png", normals(height))
     write("leaf.png", leaf())
     write("window.png", window())
+    write_radiance("evening.exr", evening())
 
 
 if __name__ == "__main__":

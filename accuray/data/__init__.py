@@ -6,6 +6,7 @@ Every function reads its file on first use and remembers the result; nothing is 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -41,6 +42,20 @@ class Glass(NamedTuple):
     A0: float
     B: Numbers
     C: Numbers
+
+
+class Sky(NamedTuple):
+    """Coefficients of the spectral sky and sun of Hosek and Wilkie (2012, 2013), flat, the last index fastest.
+
+    sky: band, albedo 0 and 1, turbidity 1 to 10, point of a Bezier curve over the sun's elevation, nine terms.
+    radiance: the same without the terms. sun: band, turbidity, piece of elevations, power from the highest.
+    limb: band, power of the cosine from the lowest. The eleven bands are at 320, 360, ... 720 nm.
+    """
+
+    sky: Numbers
+    radiance: Numbers
+    sun: Numbers
+    limb: Numbers
 
 
 def files() -> list[str]:
@@ -99,6 +114,21 @@ def teapot() -> tuple[tuple[float, float, float], ...]:
     content = _json("newell_teapot.json")
     points = [(float(x), float(y), float(z)) for x, y, z in content["vertices"]]
     return tuple(points[index] for patch in content["patches"] for index in patch)
+
+
+@cache
+def sky() -> Sky:
+    """The model of the sky and the sun; radiances come out in W m^-2 sr^-1 nm^-1."""
+    content = _json("hosek_wilkie_spectral.json")
+    return Sky(*(tuple(_flat(content[key])) for key in ("sky", "sky_radiance", "sun", "limb_darkening")))
+
+
+def _flat(nested: Any) -> Iterator[float]:
+    if isinstance(nested, list):
+        for item in nested:
+            yield from _flat(item)
+    else:
+        yield float(nested)
 
 
 def _lines(file: str) -> list[str]:

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from accuray import data
-from accuray.devices.emitters import lamp, spread_emissions
+from accuray.devices.emitters import spread_emissions
+from accuray.devices.lights import LightLowering, matrix
 from accuray.devices.materials import MaterialLowering
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
@@ -94,8 +95,10 @@ class _Lowering:
         materials = self._guard("materials", spread)
         self.materials = MaterialLowering(materials, builder, self._values_of, self._guard).numbers()
         self._add_shapes()
+        values_of = partial(self._values, "light")
+        lights = LightLowering(builder, values_of, self._spectrum, self._picture, self._need_rgb_table)
         for name, light in self.scene.lights.items():
-            self._guard(f"lights.{name}", partial(self._add_light, light))
+            self._guard(f"lights.{name}", partial(lights.add, light))
         camera, pixel_filter, integrator = self.scene.camera, self.scene.filter, self.scene.integrator
         values = self._values("camera", camera)
         self._guard("camera", partial(builder.set_camera, camera["type"], values, film["width"], film["height"]))
@@ -179,12 +182,12 @@ class _Lowering:
                 groups[members] = numbers[0]
             material = None if table["material"] is None else self.materials[table["material"]]
             add = partial(
-                self.builder.add_instance, groups[members], len(members), _matrix(table["transform"]), material
+                self.builder.add_instance, groups[members], len(members), matrix(table["transform"]), material
             )
             self._guard(f"shapes.{name}", add)
 
     def _add_shape(self, name: str, table: Values) -> int:
-        material, transform = self.materials[table["material"]], _matrix(table["transform"])
+        material, transform = self.materials[table["material"]], matrix(table["transform"])
         number: int
         if table["type"] == "mesh" or table["type"] in self.solids:
             mesh = self.triangles(name, table)
@@ -223,14 +226,6 @@ class _Lowering:
         elif table["shading"] == "smooth" and normals is None:
             normals = core.smooth_normals(positions, faces)
         return Triangles(positions, faces, normals, uvs, colors)
-
-    def _add_light(self, light: Values) -> None:
-        from accuray._core import lower as core
-
-        numbers = {key: value for key, value in light.items() if not isinstance(value, Spectrum)}
-        values = self._values("light", numbers)
-        made = lamp(light, values, core.lamp_power)
-        self.builder.add_light(light["type"], values, self._spectrum(made.emission), made.photometry)
 
     def _spectrum(self, spectrum: Spectrum) -> Any:
         """The builder's reference to a spectrum; equal spectra share one."""
@@ -272,8 +267,3 @@ def colour_arrays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     white = [interpolate(*data.illuminants()["D65"], 360.0 + i, "zero") for i in range(471)]
     scale = fsum(observer.y) / fsum(w * y for w, y in zip(white, observer.y, strict=True))
     return cmf, np.array([w * scale for w in white])
-
-
-def _matrix(transform: NDArray[np.float64] | None) -> list[float] | None:
-    """The upper three rows of a 4x4 matrix, row by row."""
-    return None if transform is None else [float(value) for value in transform[:3].ravel()]

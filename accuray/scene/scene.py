@@ -12,6 +12,7 @@ from typing import Any
 from accuray.scene import openpbr
 from accuray.scene import schema as schemas
 from accuray.scene.composition import check_parts
+from accuray.scene.environments import check_environments
 from accuray.scene.errors import Document, Source, Where
 from accuray.scene.exposure import resolve_exposure
 from accuray.scene.identity import scene_identity
@@ -99,6 +100,7 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
     openpbr.settle(materials, top.child("materials"))
     check_parts(materials, schema, top.child("materials"))
     settle_colour_spaces(textures, materials, top.child("textures"))
+    check_environments(lights, top.child("lights"))
     check_opacity(materials, top)
     check_bumps(textures, materials, schema, top)
     check_vertices(textures, materials, shapes, schema, top)

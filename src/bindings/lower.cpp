@@ -208,6 +208,27 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
           },
           "type"_a, "values"_a, "emission"_a, "photometry"_a.none())
       .def(
+          "add_sun",
+          [](SceneBuilder& b, const nb::dict& values, SpectrumRef emission, bool is_irradiance) {
+            b.add_sun(to_values(values), emission, is_irradiance);
+          },
+          "values"_a, "emission"_a, "is_irradiance"_a)
+      .def(
+          "add_environment",
+          [](SceneBuilder& b, const nb::dict& values, const OptionalMatrix& transform, uint32_t picture, bool srgb) {
+            b.add_environment(to_values(values), transform, {picture, srgb});
+          },
+          "values"_a, "transform"_a.none(), "picture"_a, "srgb"_a)
+      .def(
+          "add_sky",
+          [](SceneBuilder& b, const nb::dict& values, SpectrumRef albedo, const Column<double>& sky,
+             const Column<double>& radiance, const Column<double>& sun, const Column<double>& limb) {
+            b.add_sky(to_values(values), albedo,
+                      {to_vector(sky), to_vector(radiance), to_vector(sun), to_vector(limb)});
+          },
+          "values"_a, "albedo"_a, "sky"_a, "radiance"_a, "sun"_a, "limb"_a,
+          "The coefficients of accuray.data.sky(), flat.")
+      .def(
           "set_camera",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, double width, double height) {
             b.set_camera(type, to_values(values), {width, height});

@@ -166,7 +166,8 @@ nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<flo
     const Ray ray{from, row(wi, i)};
     const Hit hit = accel.closest(ray);
     if (hit.geometry == none) {
-      pdf.push_back(view.root->environment == light ? light_pdf(view, light, from, ray.direction, Surface{}) : 0.0f);
+      const bool infinite = is_infinite_light(view.lights[light].light.tag);
+      pdf.push_back(infinite ? light_pdf(view, light, from, ray.direction, Surface{}) : 0.0f);
       continue;
     }
     const Surface surface = surface_at(view, ray, hit);
@@ -185,9 +186,19 @@ double light_power(const LoadedScene& scene, uint32_t light, float scene_radius)
   });
 }
 
+// Radiance (N, 4) of an infinite light at four wavelengths in each direction.
+nb::object light_radiance(const LoadedScene& scene, uint32_t light, const std::vector<float>& wavelengths,
+                          const Vectors& wi) {
+  const SceneView& view = scene.accel.view();
+  if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
+  std::vector<float> radiance;
+  for (size_t i = 0; i < wi.shape(0); ++i) put(radiance, radiance_from(view, light, row(wi, i), carried(wavelengths)));
+  return to_numpy(std::move(radiance), 4);
+}
+
 nb::list light_names(const LoadedScene& scene) {
-  constexpr const char* names[] = {"point", "constant", "triangle",    "quad", "sphere",
-                                   "disk",  "spot",     "directional", "ies"};
+  constexpr const char* names[] = {"point", "constant",    "triangle", "quad",        "sphere", "disk",
+                                   "spot",  "directional", "ies",      "environment", "sun",    "sky"};
   static_assert(Lights::size == std::size(names));
   nb::list result;
   const SceneView& view = scene.accel.view();
@@ -310,6 +321,7 @@ constexpr std::pair<std::string_view, Function> kFunctions[] = {
     {"asin", [](double x) { return static_cast<double>(accuray::asin(static_cast<float>(x))); }},
     {"acos", [](double x) { return static_cast<double>(accuray::acos(static_cast<float>(x))); }},
     {"exp", [](double x) { return accuray::exp(x); }},
+    {"exp32", [](double x) { return static_cast<double>(accuray::exp(static_cast<float>(x))); }},
     {"log", [](double x) { return accuray::log(x); }},
     {"sin64", [](double x) { return sincos(x).sin; }},
     {"cos64", [](double x) { return sincos(x).cos; }},
@@ -337,6 +349,7 @@ void bind_probe(nb::module_& module) {
   probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);
   probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);
   probe.def("light_power", &light_power, "scene"_a, "light"_a, "scene_radius"_a);
+  probe.def("light_radiance", &light_radiance, "scene"_a, "light"_a, "wavelengths"_a, "wi"_a);
   probe.def("light_names", &light_names, "scene"_a);
   probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false);
   probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a);

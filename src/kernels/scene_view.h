@@ -12,7 +12,7 @@
 
 namespace accuray {
 
-constexpr uint32_t block_version = 4;
+constexpr uint32_t block_version = 5;
 constexpr uint32_t lambda_guide_size = 512;
 
 template <class T>
@@ -81,6 +81,14 @@ struct LightRecord {
   uint32_t both_sides;
 };
 
+// A light beyond everything that a ray which leaves the scene meets.
+struct InfiniteRecord {
+  uint32_t light;
+  uint32_t hidden;       // from the camera
+  uint32_t directional;  // its radiance differs from direction to direction
+  uint32_t partial;      // there are directions in which it is not
+};
+
 // Which surface a light is: where on it a sampled point lies decides what a textured one emits.
 struct LightPlace {
   uint32_t geometry;
@@ -90,13 +98,10 @@ struct LightPlace {
 
 struct Root {
   uint32_t version;
-  uint32_t environment;  // index of the constant environment light; none: black
-  uint32_t hide_environment;
   uint32_t any_opacity;     // some material lets rays through
   uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
   uint32_t any_mipmap;  // some texture asks how much of it a ray stands for
-  uint32_t reserved;
   Tagged camera, filter, integrator;
   Slice<MaterialRecord> materials;
   Slice<InteriorRecord> interiors;
@@ -104,7 +109,8 @@ struct Root {
   Slice<InstanceRecord> instances;
   Slice<LightRecord> lights;
   Slice<LightPlace> light_places;  // of every light; empty if no emission is textured
-  Slice<float> light_cdf;          // running sums of selection probabilities, lights + 1 entries
+  Slice<InfiniteRecord> infinite_lights;
+  Slice<float> light_cdf;  // running sums of selection probabilities, lights + 1 entries
   Slice<uint32_t> light_of_primitive;
   Slice<uint32_t> lights_of_instance;
   Slice<SpectrumRecord> spectra;
@@ -127,6 +133,7 @@ struct SceneView {
   const InstanceRecord* instances;
   const LightRecord* lights;
   const LightPlace* light_places;
+  const InfiniteRecord* infinite_lights;
   const float* light_cdf;
   const uint32_t* light_of_primitive;
   const uint32_t* lights_of_instance;
@@ -161,6 +168,7 @@ struct SceneView {
     view.instances = view.at(root.instances);
     view.lights = view.at(root.lights);
     view.light_places = view.at(root.light_places);
+    view.infinite_lights = view.at(root.infinite_lights);
     view.light_cdf = view.at(root.light_cdf);
     view.light_of_primitive = view.at(root.light_of_primitive);
     view.lights_of_instance = view.at(root.lights_of_instance);

@@ -60,9 +60,11 @@ void move_mesh(const Matrix& m, MeshArrays& mesh) {
 }  // namespace
 
 SceneBuilder::SceneBuilder(ColourData colour)
-    : spectra_(std::move(colour)), textures_(pool_, spectra_, bulk_), lights_(pool_, spectra_) {
+    : spectra_(std::move(colour)),
+      textures_(pool_, spectra_, bulk_),
+      environments_(textures_, bulk_),
+      lights_(pool_, spectra_) {
   root_.version = block_version;
-  root_.environment = none;
   root_.film_step = 0x1p-24f;
 }
 
@@ -312,11 +314,7 @@ uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord&
 
 void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission,
                              const Photometry& photometry) {
-  if (type == ConstantLight::name) {
-    if (root_.environment != none) throw std::invalid_argument("a scene has at most one environment light");
-    root_.environment = lights_.add(ConstantLight{}, emission, true);
-    return;
-  }
+  if (type == ConstantLight::name) return add_constant(values, emission);
   const uint32_t tag = tag_named(NamedLights{}, type);
   dispatch(NamedLights{}, tag, [&](auto named) {
     const auto lamp = lamp_of(named, values, photometry);
@@ -348,7 +346,7 @@ void SceneBuilder::set_integrator(std::string_view type, const Values& values) {
 
 void SceneBuilder::set_film(double step, bool hide_environment) {
   root_.film_step = static_cast<float>(step);
-  root_.hide_environment = hide_environment ? 1u : 0u;
+  hide_infinite_ = hide_environment;
 }
 
 std::vector<const uint8_t*> SceneBuilder::section_bases() const {
@@ -396,6 +394,8 @@ Block SceneBuilder::finish() {
   root_.instances = writer.append(instances_);
   root_.lights = writer.append(lights_.records());
   if (lights_.any_textured()) root_.light_places = writer.append(lights_.places());
+  for (InfiniteRecord& infinite : infinite_) infinite.hidden |= hide_infinite_ ? 1u : 0u;
+  root_.infinite_lights = writer.append(infinite_);
   root_.light_cdf = writer.append(lights_.power_cdf(scene_radius()));
   root_.light_of_primitive = writer.append(light_of_primitive_);
   root_.lights_of_instance = writer.append(lights_of_instance_);

@@ -13,9 +13,11 @@
 #include "lower/block.h"
 #include "lower/bounds.h"
 #include "lower/cameras.h"
+#include "lower/environments.h"
 #include "lower/lamps.h"
 #include "lower/lights.h"
 #include "lower/parameters.h"
+#include "lower/sky_model.h"
 #include "lower/spectra.h"
 #include "lower/textures.h"
 #include "lower/transform.h"
@@ -51,6 +53,11 @@ class SceneBuilder {
   void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
                     std::optional<uint32_t> material);
   void add_light(std::string_view type, const Values& values, SpectrumRef emission, const Photometry& photometry);
+  // `emission`: the disc's radiance, or its irradiance on a plane that faces it.
+  void add_sun(const Values& values, SpectrumRef emission, bool is_irradiance);
+  void add_environment(const Values& values, const std::optional<Matrix>& transform, const PictureUse& use);
+  // A sky, and its sun as a light of its own.
+  void add_sky(const Values& values, SpectrumRef albedo, const SkyData& data);
 
   void set_camera(std::string_view type, const Values& values, const FilmSize& film);
   void set_filter(std::string_view type, const Values& values);
@@ -79,6 +86,9 @@ class SceneBuilder {
   template <class L>
   uint32_t add_surface_light(const L& light, const MaterialRecord& material, LightPlace place);
   uint32_t instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material);
+  void add_constant(const Values& values, SpectrumRef emission);
+  template <class L>
+  void add_infinite(const L& light, SpectrumRef emission, const Values& values);
   float scene_radius() const;
   // The scene as far as textures read it; good until something is added.
   SceneView draft(const std::vector<const uint8_t*>& sections) const;
@@ -88,12 +98,15 @@ class SceneBuilder {
   ParameterPool pool_;
   std::vector<Section> bulk_;  // sections 1, 2, ...
   TexturePool textures_;
+  EnvironmentPool environments_;
   LightTable lights_;
   Root root_{};
   std::vector<MaterialRecord> materials_;
   std::vector<InteriorRecord> interiors_;
   std::vector<GeometryRecord> geometries_;
   std::vector<InstanceRecord> instances_;
+  std::vector<InfiniteRecord> infinite_;
+  bool hide_infinite_ = false;
   std::vector<uint32_t> light_of_primitive_;
   std::vector<uint32_t> lights_of_instance_;
   std::vector<Bounds> bounds_;  // of each geometry, in its own space

@@ -49,21 +49,23 @@ std::vector<double> texture_shares(const SceneView& scene, uint32_t lights) {
   };
   std::map<uint32_t, Sum> by_emission;
   const auto emission = [&](uint32_t i) { return scene.lights[i].emission.index; };
+  const auto is_textured_surface = [&](uint32_t i) {
+    return is_textured(scene.spectra[emission(i)].form) && !is_infinite_light(scene.lights[i].light.tag);
+  };
   for (uint32_t i = 0; i < lights; ++i) {
-    if (is_textured(scene.spectra[emission(i)].form)) ++by_emission[emission(i)].count;
+    if (is_textured_surface(i)) ++by_emission[emission(i)].count;
   }
   std::vector<double> shares(lights, 1.0);
   for (uint32_t i = 0; i < lights; ++i) {
-    const SpectrumRecord& spectrum = scene.spectra[emission(i)];
-    if (!is_textured(spectrum.form)) continue;
+    if (!is_textured_surface(i)) continue;
     Sum& sum = by_emission[emission(i)];
     const uint32_t points = std::clamp(kMostPoints / sum.count, kLeastOfLight, kMostOfLight);
-    shares[i] = mean_over(scene, i, spectrum.count, points);
+    shares[i] = mean_over(scene, i, scene.spectra[emission(i)].count, points);
     sum.mean += shares[i] / sum.count;
   }
   for (uint32_t i = 0; i < lights; ++i) {
     const auto found = by_emission.find(emission(i));
-    if (found == by_emission.end()) continue;
+    if (found == by_emission.end() || !is_textured_surface(i)) continue;
     const double common = found->second.mean > 0.0 ? found->second.mean : 1.0;
     shares[i] = (1.0 - kCommonShare) * shares[i] + kCommonShare * common;
   }

@@ -7,8 +7,6 @@
 
 namespace accuray {
 
-namespace {
-
 float stored_number(const Picture& picture, size_t i, const float* decode) {
   const uint8_t* bytes = picture.texels.data;
   switch (picture.format) {
@@ -25,6 +23,8 @@ float stored_number(const Picture& picture, size_t i, const float* decode) {
   }
   return reinterpret_cast<const float*>(bytes)[i];
 }
+
+namespace {
 
 // What is added to `target` when each of its `to` cells of `channels` numbers gets the mean of what it covers of the
 // `from` cells of `source`, times `weight`.

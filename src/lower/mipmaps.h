@@ -15,6 +15,9 @@ struct Picture {
   TexelFormat format;
 };
 
+// Number `i` of a picture's texels; `decode` as below.
+float stored_number(const Picture& picture, size_t i, const float* decode);
+
 // Levels beyond the picture itself.
 uint32_t mipmap_count(uint32_t width, uint32_t height);
 

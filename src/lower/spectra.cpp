@@ -164,6 +164,16 @@ SpectrumRef SpectrumPool::textured_emission(uint32_t texture, double scale) {
   return add({SpectrumForm::textured_emission, static_cast<float>(scale), 0, 0, 0, d65_table(), texture, 1});
 }
 
+SpectrumRef SpectrumPool::scaled(SpectrumRef ref, double factor) {
+  SpectrumRecord record = records_.at(ref.index);
+  record.scale = static_cast<float>(static_cast<double>(record.scale) * factor);
+  return add(record);
+}
+
+SpectrumRef SpectrumPool::directional(const std::vector<float>& means, double scale) {
+  return add({SpectrumForm::directional, static_cast<float>(scale), 0, 0, 0, add_table(means), lambda_nodes, 1});
+}
+
 uint32_t SpectrumPool::add_table(const std::vector<float>& values) {
   const auto first = static_cast<uint32_t>(tables_.size());
   tables_.insert(tables_.end(), values.begin(), values.end());

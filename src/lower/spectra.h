@@ -43,6 +43,12 @@ class SpectrumPool {
   // A light of a texture's colours under D65, times `scale`, likewise. For value() it is that of the colour white.
   SpectrumRef textured_emission(uint32_t texture, double scale);
 
+  // The same spectrum times a factor.
+  SpectrumRef scaled(SpectrumRef ref, double factor);
+  // What a light of its own says for each direction, times `scale`. For value() it is that of `means`, at 360 ... 830
+  // nm.
+  SpectrumRef directional(const std::vector<float>& means, double scale);
+
   // Position of further values in the tables.
   uint32_t add_table(const std::vector<float>& values);
 

@@ -40,6 +40,18 @@ uint32_t TexturePool::srgb_table(uint32_t most) {
   return srgb_tables_[most] = spectra_.add_table(table);
 }
 
+uint32_t TexturePool::curve_of(const PictureUse& use) {
+  const TexelFormat format = picture(use).format;
+  if (use.srgb && format == TexelFormat::u8) return srgb_table(0xffu);
+  if (use.srgb && format == TexelFormat::u16) return srgb_table(0xffffu);
+  return none;
+}
+
+const float* TexturePool::decoding(const PictureUse& use) {
+  const uint32_t curve = curve_of(use);
+  return curve == none ? nullptr : spectra_.tables().data() + curve;
+}
+
 void TexturePool::show(ImageTexture& texture, const PictureUse& use) {
   const auto& [picture, section] = pictures_.at(use.picture);
   texture.texels = {0, section, 0};
@@ -47,17 +59,15 @@ void TexturePool::show(ImageTexture& texture, const PictureUse& use) {
   texture.height = picture.height;
   texture.channels = picture.channels;
   texture.format = picture.format;
-  texture.decode = none;
-  if (use.srgb && picture.format == TexelFormat::u8) texture.decode = srgb_table(0xffu);
-  if (use.srgb && picture.format == TexelFormat::u16) texture.decode = srgb_table(0xffffu);
-  if (texture.filter == TexelFilter::mipmap) texture.mipmaps = mipmaps_of(use, texture.decode);
+  texture.decode = curve_of(use);
+  if (texture.filter == TexelFilter::mipmap) texture.mipmaps = mipmaps_of(use);
 }
 
-Mipmaps TexturePool::mipmaps_of(const PictureUse& use, uint32_t decode) {
+Mipmaps TexturePool::mipmaps_of(const PictureUse& use) {
   const auto found = mipmaps_.find({use.picture, use.srgb});
   if (found != mipmaps_.end()) return found->second;
   const Picture& picture = pictures_.at(use.picture).first;
-  std::vector<float> texels = make_mipmaps(picture, decode == none ? nullptr : spectra_.tables().data() + decode);
+  std::vector<float> texels = make_mipmaps(picture, decoding(use));
   const uint32_t count = mipmap_count(picture.width, picture.height);
   Mipmaps mipmaps{{0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(texels.size())}, count};
   bulk_.push_back(section_of(std::move(texels)));

@@ -30,14 +30,20 @@ class TexturePool {
   // The texture's number. Textures that show a picture need one.
   uint32_t add(std::string_view type, const Values& values, std::optional<PictureUse> use);
 
+  const Picture& picture(const PictureUse& use) const { return pictures_.at(use.picture).first; }
+  // What the picture's integers mean as colours, null if they are divided; good until a table is added.
+  const float* decoding(const PictureUse& use);
+
   const std::vector<Tagged>& records() const { return records_; }
   bool any_mipmap() const { return !mipmaps_.empty(); }
 
  private:
   // The mipmaps of a picture, which all textures that show it so share.
-  Mipmaps mipmaps_of(const PictureUse& use, uint32_t decode);
+  Mipmaps mipmaps_of(const PictureUse& use);
   void show(ImageTexture& texture, const PictureUse& use);
   uint32_t srgb_table(uint32_t most);
+  // Position of the picture's curve in the tables; none: integers are divided.
+  uint32_t curve_of(const PictureUse& use);
 
   ParameterPool& pool_;
   SpectrumPool& spectra_;

@@ -20,7 +20,7 @@ FILE_NAME = re.compile(r"# (\S+\.(?:toml|csv))\b")
 def folder(tmp_path: Path) -> Path:
     """A folder with the files that the page's scenes name; the page writes most of them itself."""
     (tmp_path / "pyramid.obj").write_text(PYRAMID, encoding="utf-8")
-    for picture in (REPOSITORY / "scenes/textures").glob("*.png"):
+    for picture in (REPOSITORY / "scenes/textures").iterdir():
         (tmp_path / picture.name).write_bytes(picture.read_bytes())
     for block in (*blocks(PAGE, "csv"), *blocks(PAGE, "toml")):
         if name := FILE_NAME.match(block.text):

@@ -66,6 +66,18 @@ def brightened(scene: accuray.Scene, light: str, factor: float) -> accuray.Scene
     return replace(scene, lights=scene.lights | {light: table | {key: brighter}})
 
 
+def softened(scene: accuray.Scene, light: str, most: float) -> accuray.Scene:
+    """An environment map whose texels are held at `most`."""
+    table = scene.lights[light]
+    return replace(scene, lights=scene.lights | {light: table | {"pixels": np.minimum(table["pixels"], most)}})
+
+
+def with_large_sun(scene: accuray.Scene, light: str, diameter: float) -> accuray.Scene:
+    """A sky whose sun has this angular diameter, degrees, and the same irradiance."""
+    table = scene.lights[light] | {"angular_diameter": float(np.radians(diameter))}
+    return replace(scene, lights=scene.lights | {light: table})
+
+
 def glowing_under(scene: accuray.Scene, lamp: str, factor: float, material: str, radiance: float) -> accuray.Scene:
     """The lamp `enlarged`, and the material `glowing`."""
     return glowing(enlarged(scene, lamp, factor), material, radiance)
@@ -128,6 +140,10 @@ FAIR = {
     "depth-of-field": Fair(
         "the lamps in the background a tenth as bright", partial(dimmed, names=("warm", "cool"), factor=0.1)
     ),
+    "environment": Fair(
+        "the map's sun held at the brightness of what is around it",
+        partial(softened, light="evening", most=np.float16(4)),
+    ),
     "furnace": Fair("as it is: its light comes from everywhere"),
     "glass-and-texture": Fair("the wall glows", partial(glowing, material="wall", radiance=1.0)),
     "ies": Fair("the moon 20 times as bright", partial(brightened, light="moon", factor=20)),
@@ -142,6 +158,9 @@ FAIR = {
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
     "spot": Fair("cones of 70 degrees, so that every lamp lights most of the stage", partial(widened, outer=70.0)),
+    "sunny": Fair(
+        "the sun 60 times as wide, with the same irradiance", partial(with_large_sun, light="day", diameter=32.0)
+    ),
     "teapot": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),
     "thin-film": Fair("the ground glows", partial(glowing, material="ground", radiance=0.2)),
     "torus-knot": Fair("the room glows", partial(glowing, material="plaster", radiance=1.0)),

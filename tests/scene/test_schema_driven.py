@@ -94,6 +94,7 @@ def numeric_fields() -> list[Any]:
 #: One alternative of the sets that have no default.
 NEEDED: dict[str, dict[str, Any]] = {
     "conductor": {"eta": 1.0, "k": 1.0},
+    "environment": {"pixels": [[0.5]]},
     "ies": {"file": "builtin:wall_washer.ies"},
 }
 

@@ -42,6 +42,8 @@ ALWAYS = (
     "C7.fisheye-off-axis",
     "C8.xy-D65",
     "C8.red-lamp-xyz",
+    "C9.sky-560nm",
+    "C9.ground-560nm-sun/mis",
 )
 
 

@@ -31,10 +31,6 @@ inline void intersect(const SceneView& scene, const A& accel, Path& path) {
   }
 }
 
-inline Spectrum environment_radiance(const SceneView& scene, const Wavelengths& wl) {
-  return scene.spectrum(scene.lights[scene.root->environment].emission, wl);
-}
-
 // Radiance that the surface sends back along the ray.
 inline Spectrum emitted(const SceneView& scene, const Hit& hit, const Surface& surface, Vec3 wo,
                         const Wavelengths& wl) {
@@ -64,20 +60,21 @@ inline float hit_weight(const SceneView& scene, Strategy strategy, const Path& p
   return mis_weight(path.bsdf_pdf, pdf);
 }
 
-// Step shade_miss: the ray left the scene.
+// Step shade_miss: the ray left the scene, and meets the infinite lights in its direction.
 inline void shade_miss(const SceneView& scene, Strategy strategy, Path& path) {
   path.alive = false;
   const bool seen_by_camera = path.depth == 0;
-  if (seen_by_camera && scene.root->hide_environment != 0) {
-    path.alpha = 0.0f;
-    return;
+  bool covered = !seen_by_camera;
+  for (uint32_t i = 0; i < scene.root->infinite_lights.count; ++i) {
+    const InfiniteRecord& infinite = scene.infinite_lights[i];
+    if (seen_by_camera && infinite.hidden != 0) continue;
+    const Spectrum radiance = radiance_met(scene, infinite, path.ray.direction, path.wl);
+    if (infinite.partial != 0 && is_black(radiance)) continue;
+    covered = true;
+    const float weight = hit_weight(scene, strategy, path, infinite.light, Surface{});
+    path.radiance = fma(path.throughput * weight, radiance, path.radiance);
   }
-  if (scene.root->environment == none) {
-    if (seen_by_camera) path.alpha = 0.0f;
-    return;
-  }
-  const float weight = hit_weight(scene, strategy, path, scene.root->environment, Surface{});
-  path.radiance = fma(path.throughput * weight, environment_radiance(scene, path.wl), path.radiance);
+  if (!covered) path.alpha = 0.0f;
 }
 
 // Part of a light sample that arrives: everything but the light's own emission.

@@ -9,6 +9,8 @@ struct ConstantLight {
   float unused;  // no parameter but the radiance, which the LightRecord holds
 
   static constexpr bool delta = false;
+  static constexpr bool infinite = true;
+  static constexpr bool partial = false;
   static constexpr const char* name = "constant";
   static constexpr const char* doc = "An infinitely distant environment of equal radiance in all directions.";
   static constexpr auto params() {
@@ -19,12 +21,11 @@ struct ConstantLight {
                             .low = 0,
                             .unit = "W/(m^2 sr nm)",
                             .role = "emission",
-                            .animatable = true});
+                            .animatable = true},
+                      visible_param());
   }
 
-  LightSample sample(Vec3, Vec2 u) const {
-    return {square_to_sphere(u), {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, infinity, uniform_sphere_pdf, 1.0f};
-  }
+  LightSample sample(Vec3, Vec2 u) const { return sample_from_afar({square_to_sphere(u), uniform_sphere_pdf}); }
   float pdf(Vec3, Vec3, const Surface&) const { return uniform_sphere_pdf; }
   // Flux into a sphere around the scene.
   float power_per_radiance(float scene_radius) const { return 4.0f * pi * pi * scene_radius * scene_radius; }

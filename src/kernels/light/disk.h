@@ -11,6 +11,7 @@ struct DiskLight {
   float radius;
 
   static constexpr bool delta = false;
+  static constexpr bool infinite = false;
 
   float area() const { return pi * radius * radius; }
 

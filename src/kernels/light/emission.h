@@ -1,7 +1,7 @@
 // Emission that a texture gives: the same function of the place, whether a path met the light there or chose the point.
 #pragma once
 
-#include "kernels/light/list.h"
+#include "kernels/light/select.h"
 #include "kernels/texture/list.h"
 
 namespace accuray {
@@ -52,9 +52,31 @@ inline TexturePoint point_on_light(const SceneView& scene, uint32_t light, Vec3 
   return texture_point(scene, hit_on_light(scene, light, point), surface);
 }
 
-// What a textured light emits at a chosen point.
+// Radiance of an infinite light in a direction.
+ACCURAY_NOINLINE inline Spectrum radiance_from(const SceneView& scene, uint32_t light, Vec3 wi, Wavelengths wl) {
+  const LightRecord& record = scene.lights[light];
+  const SpectrumRecord& emission = scene.spectra[record.emission.index];
+  return dispatch(Lights{}, record.light.tag, [&](auto type) {
+    const auto& met = scene.as<typename decltype(type)::type>(record.light);
+    if constexpr (requires { met.radiance(scene, emission, wi, wl); }) {
+      return met.radiance(scene, emission, wi, wl);
+    } else {
+      return evaluate(emission, scene.tables, wl);
+    }
+  });
+}
+
+// What a ray that leaves the scene meets of one.
+inline Spectrum radiance_met(const SceneView& scene, const InfiniteRecord& infinite, Vec3 wi, const Wavelengths& wl) {
+  if (infinite.directional != 0) [[unlikely]]
+    return radiance_from(scene, infinite.light, wi, wl);
+  return scene.spectrum(scene.lights[infinite.light].emission, wl);
+}
+
+// What a light whose emission is not the same everywhere emits at a chosen point, or in a direction if it is infinite.
 ACCURAY_NOINLINE inline Spectrum emission_chosen(const SceneView& scene, const SpectrumRecord& emission, uint32_t light,
                                                  Vec3 point, Wavelengths wl) {
+  if (is_infinite_light(scene.lights[light].light.tag)) return radiance_from(scene, light, point, wl);
   return textured_spectrum(scene, emission, point_on_light(scene, light, point), wl);
 }
 

@@ -10,6 +10,9 @@
 //     1/d^2 for a point, 0 on a side that does not emit.
 //   - power_per_radiance(scene_radius) is the flux per unit of emission: that of one side of a surface, and what an
 //     infinite light sends into a sphere around the scene.
+//   - `infinite` lights lie beyond everything; a sample's `point` is its direction. Those whose radiance differs from
+//     direction to direction have radiance(scene, emission, wi, wl). Lights that read tables take the scene as the
+//     first argument of sample() and pdf().
 #pragma once
 
 #include "kernels/geometry/surface.h"
@@ -19,7 +22,7 @@ namespace accuray {
 
 struct LightSample {
   Vec3 wi;      // unit, from the reference to the light
-  Vec3 point;   // on the light, if `distance` is finite
+  Vec3 point;   // on the light; `wi` if the distance is infinite
   Vec3 error;   // bound of the point's error
   Vec3 normal;  // of the light there; zero for points
   float distance;
@@ -43,6 +46,34 @@ inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 
 // area from afar, where that is as good and cheaper. The same function of the reference decides in sample() and pdf().
 inline bool is_near(Vec3 reference, Vec3 middle, float radius_squared) {
   return length_squared(middle - reference) < 16.0f * radius_squared;
+}
+
+// A direction drawn by an infinite light. Its draw() and density() are never inlined: most scenes have no such light,
+// and threads of a GPU little memory.
+struct Drawn {
+  Vec3 wi;
+  float pdf;
+};
+template <class L>
+ACCURAY_NOINLINE inline Drawn drawn_by(const L& light, const SceneView& scene, Vec2 u) {
+  return light.draw(scene, u);
+}
+template <class L>
+ACCURAY_NOINLINE inline float density_of(const L& light, const SceneView& scene, Vec3 wi) {
+  return light.density(scene, wi);
+}
+
+// A sample of a light beyond everything.
+inline LightSample sample_from_afar(Drawn drawn) {
+  return {drawn.wi, drawn.wi, {0, 0, 0}, {0, 0, 0}, infinity, drawn.pdf, drawn.pdf > 0.0f ? 1.0f : 0.0f};
+}
+
+// The parameter of infinite lights that hides them.
+constexpr Param visible_param() {
+  return {.name = "visible",
+          .kind = Kind::boolean,
+          .doc = "Whether the camera sees it directly. It lights the scene, mirrors and glass either way.",
+          .preset = "true"};
 }
 
 // Solid angles beyond these bounds (sr) are left to area sampling too: the spherical formulas err by 1e-7 sr.

@@ -9,6 +9,7 @@ struct PointLight {
   Vec3 position;
 
   static constexpr bool delta = true;
+  static constexpr bool infinite = false;
   static constexpr const char* name = "point";
   static constexpr const char* doc = "A point that radiates equally in all directions; no path can hit it.";
   static constexpr auto params() {

@@ -68,6 +68,7 @@ struct QuadLight {
   float width, height;
 
   static constexpr bool delta = false;
+  static constexpr bool infinite = false;
 
   Vec3 at(Vec2 u) const { return fma(u.x * width, x, fma(u.y * height, y, corner)); }
   float area() const { return width * height; }

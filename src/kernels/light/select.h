@@ -35,8 +35,12 @@ inline float choice_probability(const SceneView& scene, Vec3, Vec3, float, uint3
 inline LightSample sample_light(const SceneView& scene, uint32_t light, Vec3 reference, Vec2 u) {
   const LightRecord& record = scene.lights[light];
   LightSample s = dispatch(Lights{}, record.light.tag, [&](auto type) {
-    using L = typename decltype(type)::type;
-    return scene.as<L>(record.light).sample(reference, u);
+    const auto& chosen = scene.as<typename decltype(type)::type>(record.light);
+    if constexpr (requires { chosen.sample(scene, reference, u); }) {
+      return chosen.sample(scene, reference, u);
+    } else {
+      return chosen.sample(reference, u);
+    }
   });
   const bool faces_away = dot(s.normal, s.wi) >= 0.0f && length_squared(s.normal) > 0.0f;
   if (faces_away && record.both_sides == 0) s.scale = 0.0f;
@@ -46,13 +50,21 @@ inline LightSample sample_light(const SceneView& scene, uint32_t light, Vec3 ref
 inline float light_pdf(const SceneView& scene, uint32_t light, Vec3 reference, Vec3 wi, const Surface& at) {
   const LightRecord& record = scene.lights[light];
   return dispatch(Lights{}, record.light.tag, [&](auto type) {
-    using L = typename decltype(type)::type;
-    return scene.as<L>(record.light).pdf(reference, wi, at);
+    const auto& met = scene.as<typename decltype(type)::type>(record.light);
+    if constexpr (requires { met.pdf(scene, reference, wi, at); }) {
+      return met.pdf(scene, reference, wi, at);
+    } else {
+      return met.pdf(reference, wi, at);
+    }
   });
 }
 
 inline bool is_delta_light(uint32_t tag) {
   return dispatch(Lights{}, tag, [](auto type) { return decltype(type)::type::delta; });
+}
+
+inline bool is_infinite_light(uint32_t tag) {
+  return dispatch(Lights{}, tag, [](auto type) { return decltype(type)::type::infinite; });
 }
 
 }  // namespace accuray

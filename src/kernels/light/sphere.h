@@ -10,6 +10,7 @@ struct SphereLight {
   float radius;
 
   static constexpr bool delta = false;
+  static constexpr bool infinite = false;
 
   // Points nearer than this count as inside: those of the sphere itself must, on whichever side rounding puts them.
   static constexpr float most_outside = 0.9999f;

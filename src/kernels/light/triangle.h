@@ -46,6 +46,7 @@ struct TriangleLight {
   float area;
 
   static constexpr bool delta = false;
+  static constexpr bool infinite = false;
 
   // A point chosen uniformly by area.
   Vec3 at(Vec2 u) const {

@@ -84,6 +84,20 @@ inline double exp(double x) {
   return sum * double_of(static_cast<uint64_t>(static_cast<int64_t>(k) + 1023) << 52);
 }
 
+// e^x in single precision (coefficients as in Cephes expf; Moshier 1989); flushed to 0 below -87, held above 88.
+inline float exp(float x) {
+  if (x < -87.0f) return 0.0f;
+  x = min(x, 88.0f);
+  const float k = floor(fma(x, 1.44269504088896341f, 0.5f));
+  const float r = fma(k, 2.12194440e-4f, fma(k, -0.693359375f, x));
+  float p = fma(1.9875691500e-4f, r, 1.3981999507e-3f);
+  p = fma(p, r, 8.3334519073e-3f);
+  p = fma(p, r, 4.1665795894e-2f);
+  p = fma(p, r, 1.6666665459e-1f);
+  p = fma(p, r, 5.0000001201e-1f);
+  return (fma(p, r * r, r) + 1.0f) * float_of(static_cast<uint32_t>(static_cast<int32_t>(k) + 127) << 23);
+}
+
 // Natural logarithm of a positive normal double: m 2^k with m in [sqrt(1/2), sqrt(2)), atanh series in
 // (m - 1)/(m + 1).
 inline double log(double x) {

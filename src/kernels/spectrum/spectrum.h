@@ -12,9 +12,10 @@ enum class SpectrumForm : uint32_t {
   sigmoid,      // scale * S(c0 t^2 + c1 t + c2), t = (lambda - 360) / 470 (Jakob and Hanika 2019)
   lit_sigmoid,  // the same times a table at 1 nm: an RGB light under a white
   // From here on the spectrum differs from point to point: read by textured_spectrum() in texture/list.h.
-  textured,          // scale * the texture number `table`, as a reflectance
-  textured_index,    // scale * channel `count` of the texture number `table`, within c0 and c1, at all wavelengths
-  textured_emission  // scale * the texture number `count` under the table's white; here: of the texture's white
+  textured,           // scale * the texture number `table`, as a reflectance
+  textured_index,     // scale * channel `count` of the texture number `table`, within c0 and c1, at all wavelengths
+  textured_emission,  // scale * the texture number `count` under the table's white; here: of the texture's white
+  directional         // what its light says for a direction; here: scale * table at 1 nm, the mean over directions
 };
 
 constexpr bool is_textured(SpectrumForm form) { return form >= SpectrumForm::textured; }
@@ -62,6 +63,7 @@ inline Spectrum evaluate(const SpectrumRecord& s, const float* tables, const Wav
   switch (s.form) {
     case SpectrumForm::table:
     case SpectrumForm::textured_emission:
+    case SpectrumForm::directional:
       return lookup(tables + s.table, wl) * s.scale;
     case SpectrumForm::fine:
       return lookup_fine(s, tables + s.table, wl) * s.scale;

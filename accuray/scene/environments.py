@@ -1,0 +1,33 @@
+"""Environment maps: what their pictures must fulfil."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from accuray.scene.errors import Where
+
+
+def check_environments(lights: dict[str, dict[str, Any]], where: Where) -> None:
+    """Puts what ``color_space = "auto"`` means in its place; radiance is never negative. Raises SceneError."""
+    for name, light in lights.items():
+        pixels = light.get("pixels")
+        if pixels is None:
+            continue
+        stored_as_float = pixels.dtype.kind == "f"
+        if light["color_space"] == "auto":
+            light["color_space"] = "linear" if stored_as_float else "srgb"
+        if stored_as_float:
+            _check_radiance(pixels, where.child(name, "pixels" if light["file"] is None else "file"))
+
+
+def _check_radiance(pixels: Any, where: Where) -> None:
+    import numpy as np
+
+    colours = pixels[..., : 3 if pixels.shape[2] >= 3 else 1]
+    if colours.min() < 0:
+        row, column, channel = (int(index) for index in np.argwhere(colours < 0)[0])
+        raise where.error(
+            f"has a texel of negative radiance: {float(colours[row, column, channel]):g} at row {row}, "
+            f"column {column}, channel {channel}",
+            allowed="numbers of at least 0",
+        )

@@ -1,0 +1,77 @@
+#include "lower/direction_table.h"
+
+#include <span>
+
+#include "kernels/math/functions.h"
+
+namespace accuray {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kCommonShare = 1.0 / 256.0;
+
+// Appends the running sums of the probabilities of weighted intervals, from 0 to 1; zeros if nothing has a weight.
+void append_sums(std::span<const double> weights, std::vector<float>& sums) {
+  double total = 0.0;
+  double lit = 0.0;
+  for (const double w : weights) {
+    total += w;
+    lit += w > 0.0 ? 1.0 : 0.0;
+  }
+  double sum = 0.0;
+  sums.push_back(0.0f);
+  for (const double w : weights) {
+    if (w > 0.0) sum += (1.0 - kCommonShare) * (w / total) + kCommonShare / lit;
+    sums.push_back(static_cast<float>(sum));
+  }
+  if (total > 0.0) sums.back() = 1.0f;
+}
+
+template <class T>
+Slice<T> stored(std::vector<T> values, std::vector<Section>& bulk) {
+  const Slice<T> slice{0, static_cast<uint32_t>(bulk.size() + 1), static_cast<uint32_t>(values.size())};
+  bulk.push_back(section_of(std::move(values)));
+  return slice;
+}
+
+}  // namespace
+
+double cell_solid_angle(uint32_t width, uint32_t height, uint32_t row) {
+  const double step = kPi / height;
+  const double span = sincos(step * row).cos - sincos(step * (row + 1)).cos;
+  return 2.0 * kPi * span / width;
+}
+
+double mean_of(const RadianceCells& cells) {
+  double mean = 0.0;
+  for (uint32_t row = 0; row < cells.height; ++row) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < cells.width; ++i) {
+      sum += static_cast<double>(cells.values[static_cast<size_t>(row) * cells.width + i]);
+    }
+    mean += sum * cell_solid_angle(cells.width, cells.height, row) / (4.0 * kPi);
+  }
+  return mean;
+}
+
+DirectionTable make_direction_table(const RadianceCells& cells, std::vector<Section>& bulk) {
+  std::vector<float> rows;
+  std::vector<float> columns;
+  columns.reserve(static_cast<size_t>(cells.width + 1) * cells.height);
+  std::vector<double> of_rows;
+  std::vector<double> of_cells(cells.width);
+  for (uint32_t row = 0; row < cells.height; ++row) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < cells.width; ++i) {
+      of_cells[i] = static_cast<double>(cells.values[static_cast<size_t>(row) * cells.width + i]);
+      sum += of_cells[i];
+    }
+    append_sums(of_cells, columns);
+    of_rows.push_back(sum * cell_solid_angle(cells.width, cells.height, row));
+  }
+  append_sums(of_rows, rows);
+  return {stored(std::move(rows), bulk), stored(std::move(columns), bulk), cells.width, cells.height};
+}
+
+}  // namespace accuray
