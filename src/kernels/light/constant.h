@@ -9,6 +9,7 @@ struct ConstantLight {
   float unused;  // no parameter but the radiance, which the LightRecord holds
 
   static constexpr bool delta = false;
+  static constexpr bool infinite = true;
   static constexpr const char* name = "constant";
   static constexpr const char* doc = "An infinitely distant environment of equal radiance in all directions.";
   static constexpr auto params() {

@@ -8,6 +8,7 @@
 //   - at(u) of a light that is a surface is a point chosen uniformly by area.
 //   - The radiance arriving along the sample is the light's emission times `scale`: 1 for surfaces and environments,
 //     1/d^2 for a point, 0 on a side that does not emit.
+//   - `infinite` lights are infinitely far away; the others have bounds(), by which the light tree groups them.
 #pragma once
 
 #include "kernels/geometry/surface.h"
@@ -23,6 +24,16 @@ struct LightSample {
   float distance;
   float pdf;
   float scale;
+};
+
+// Where a light is and where it sends light (Conty Estevez and Kulla 2018): directions within `cos_spread` of the axis
+// are normals, and light leaves within `cos_emission` of a normal.
+struct LightBounds {
+  Vec3 low;
+  Vec3 high;
+  Vec3 axis;
+  float cos_spread;
+  float cos_emission;
 };
 
 inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0.0f, 0.0f, 0.0f}; }

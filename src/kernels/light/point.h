@@ -9,6 +9,7 @@ struct PointLight {
   Vec3 position;
 
   static constexpr bool delta = true;
+  static constexpr bool infinite = false;
   static constexpr const char* name = "point";
   static constexpr const char* doc = "A point that radiates equally in all directions; no path can hit it.";
   static constexpr auto params() {
@@ -38,6 +39,7 @@ struct PointLight {
   }
   float pdf(Vec3, Vec3, const Surface&) const { return 0.0f; }
   float power_per_radiance(float) const { return 4.0f * pi; }
+  LightBounds bounds() const { return {position, position, {0, 0, 1}, -1.0f, 0.0f}; }
 };
 
 }  // namespace accuray
