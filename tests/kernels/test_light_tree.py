@@ -29,7 +29,7 @@ def directions(count: int, rng: np.random.Generator) -> FloatArray:
 
 
 def triangles(count: int, rng: np.random.Generator, size: float = 0.1) -> Description:
-    """An emissive mesh of triangles that lie anyhow in a cube of 4 metres; one in ten has no area, another next to none."""
+    """An emissive mesh of triangles that lie anyhow in a cube of 4 metres; one in ten has no area, one hardly any."""
     corners = rng.uniform(-2, 2, (count, 1, 3)) + size * rng.normal(size=(count, 3, 3))
     corners[::10, 2] = corners[::10, 1]
     corners[5::10, 2] = corners[5::10, 1] + 1e-5

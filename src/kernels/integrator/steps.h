@@ -96,12 +96,6 @@ inline void shade_miss(const SceneView& scene, Strategy strategy, Path& path) {
   path.radiance = fma(path.throughput * weight, environment_radiance(scene, path.wl), path.radiance);
 }
 
-// The side that a surface gathers light from when seen from `cos_viewer`, as its normal; zero: from both.
-inline Vec3 gathering_normal(const MaterialRecord& material, const Frame& frame, float cos_viewer) {
-  if (material.interior != none) return {0.0f, 0.0f, 0.0f};
-  return cos_viewer < 0.0f ? -frame.z : frame.z;
-}
-
 // Part of a light sample that arrives: everything but the light's own emission.
 template <Accel A>
 inline float visible_share(const SceneView& scene, const A& accel, const Path& path, const Surface& surface,
