@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks import memory, replay, report, settings, speed, startup, threads
+from benchmarks import lights, memory, replay, report, settings, speed, startup, threads
 
 Result = Mapping[str, Any]
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
@@ -50,6 +50,7 @@ def _figures(result: Result) -> Iterator[tuple[str, float, float, bool]]:
     for row in _good(result, "memory"):
         yield "bytes per triangle, resident", row["resident"], memory.RESIDENT_LIMIT, True
         yield "bytes per triangle, peak", row["peak"], memory.PEAK_LIMIT, True
+    yield from lights.figures(_good(result, "lights"))
     for row in _good(result, "threads"):
         yield f"two threads over one, {row['scene']}", row["speed_up"], threads.SPEED_UP_WANTED, False
 
@@ -116,6 +117,7 @@ TABLES: dict[str, tuple[str, dict[str, str]]] = {
     "frosted": ("Time to equal error: rough glass", dict(speed.EFFICIENCY_COLUMNS)),
     "startup": ("Whole process at 1 sample per pixel", dict(startup.COLUMNS)),
     "threads": ("Threads", dict(threads.COLUMNS)),
+    "lights": ("Many lamps", dict(lights.COLUMNS)),
 }
 
 

@@ -11,9 +11,20 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from benchmarks import memory, peers, replay, report, settings, speed, startup, threads
+from benchmarks import lights, memory, peers, replay, report, settings, speed, startup, threads
 
-BENCHMARKS = ("cornell", "million", "efficiency", "glossy", "frosted", "replay", "startup", "memory", "threads")
+BENCHMARKS = (
+    "cornell",
+    "million",
+    "efficiency",
+    "glossy",
+    "frosted",
+    "lights",
+    "replay",
+    "startup",
+    "memory",
+    "threads",
+)
 QUICK = {"repeats": 2, "spp": 4, "reference_factor": 16, "runs": 3}
 """``--quick`` shows that everything runs; its figures are not comparable."""
 
@@ -138,6 +149,15 @@ def _threads(options: speed.Options, _arguments: argparse.Namespace) -> Any:
     return rows
 
 
+def _lights(options: speed.Options, _arguments: argparse.Namespace) -> Any:
+    if "accuray" not in options.wanted:
+        return []
+    rows = lights.measure(options.repeats, options.spp or settings.EFFICIENCY_SPP)
+    print(report.table(rows, lights.COLUMNS))
+    print("\n" + report.table(report.limits(lights.figures(rows)), report.LIMIT_COLUMNS))
+    return rows
+
+
 def _replay(options: speed.Options, _arguments: argparse.Namespace) -> Any:
     if "accuray" not in options.wanted:
         return []
@@ -162,4 +182,5 @@ RUN: dict[str, Callable[[speed.Options, argparse.Namespace], Any]] = {
     "startup": _startup,
     "memory": _memory,
     "threads": _threads,
+    "lights": _lights,
 }

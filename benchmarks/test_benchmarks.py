@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import measures, report, scenes, settings
+from benchmarks import lights, measures, report, scenes, settings
 from benchmarks.drivers.ply import read_ply
 from benchmarks.geometry import bumpy_sphere, frame_around
 
@@ -89,3 +89,14 @@ def test_ratio_is_to_the_best_peer() -> None:
     assert found["samples/s of Cycles"]["ratio"] == 2.0
     assert found["samples/s of the fastest peer, 1 M triangles"]["ratio"] == 0.8
     assert [row["met"] for row in found.values()] == [False, False, False]
+
+
+def test_any_number_of_lamps_has_the_same_area_and_shines_down() -> None:
+    """The flux of a flat lamp is its area times pi times its radiance, and a camera above sees none of them shine."""
+    for count in lights.COUNTS[:2]:
+        positions, faces = lights.lamps(count)
+        assert len(faces) == 2 * count
+        a, b, c = (positions[faces[:, k]].astype(np.float64) for k in range(3))
+        normal = np.cross(b - a, c - a)
+        assert 0.5 * np.linalg.norm(normal, axis=1).sum() == pytest.approx(lights.LAMP_AREA, rel=1e-3)
+        assert (normal[:, 1] < -0.7 * np.linalg.norm(normal, axis=1)).all()

@@ -196,6 +196,36 @@ nb::object light_radiance(const LoadedScene& scene, uint32_t light, const std::v
   return to_numpy(std::move(radiance), 4);
 }
 
+// The light that each number u chooses at a point with a normal (zero: none), and with which probability.
+nb::tuple choose_lights(const LoadedScene& scene, const Vectors& points, const Vectors& normals,
+                        const Column<float>& u) {
+  require_rows(points.shape(0), normals.shape(0));
+  require_rows(points.shape(0), u.size());
+  const SceneView& view = scene.accel.view();
+  std::vector<uint32_t> light;
+  std::vector<float> probability;
+  for (size_t i = 0; i < points.shape(0); ++i) {
+    const LightChoice choice = choose_light(view, row(points, i), row(normals, i), 0.0f, u.data()[i]);
+    light.push_back(choice.light);
+    probability.push_back(choice.probability);
+  }
+  return nb::make_tuple(to_numpy(std::move(light), 0), to_numpy(std::move(probability), 0));
+}
+
+// The probability (N, lights) of each light at each point with its normal.
+nb::object choice_probabilities(const LoadedScene& scene, const Vectors& points, const Vectors& normals) {
+  require_rows(points.shape(0), normals.shape(0));
+  const SceneView& view = scene.accel.view();
+  const uint32_t lights = view.root->lights.count;
+  std::vector<float> probability;
+  for (size_t i = 0; i < points.shape(0); ++i) {
+    for (uint32_t light = 0; light < lights; ++light) {
+      probability.push_back(choice_probability(view, row(points, i), row(normals, i), 0.0f, light));
+    }
+  }
+  return to_numpy(std::move(probability), lights);
+}
+
 nb::list light_names(const LoadedScene& scene) {
   constexpr const char* names[] = {"point", "constant",    "triangle", "quad",        "sphere", "disk",
                                    "spot",  "directional", "ies",      "environment", "sun",    "sky"};
@@ -350,6 +380,8 @@ void bind_probe(nb::module_& module) {
   probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);
   probe.def("light_power", &light_power, "scene"_a, "light"_a, "scene_radius"_a);
   probe.def("light_radiance", &light_radiance, "scene"_a, "light"_a, "wavelengths"_a, "wi"_a);
+  probe.def("choose_lights", &choose_lights, "scene"_a, "points"_a, "normals"_a, "u"_a);
+  probe.def("choice_probabilities", &choice_probabilities, "scene"_a, "points"_a, "normals"_a);
   probe.def("light_names", &light_names, "scene"_a);
   probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false);
   probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a);

@@ -68,6 +68,10 @@ inline f32x4 max(f32x4 a, f32x4 b) {
 inline f32x4 min(f32x4 a, f32x4 b) {
   return {{fminf(a[0], b[0]), fminf(a[1], b[1]), fminf(a[2], b[2]), fminf(a[3], b[3])}};
 }
+inline f32x4 select_greater(f32x4 a, f32x4 b, f32x4 x, f32x4 y) {
+  return {{a[0] > b[0] ? x[0] : y[0], a[1] > b[1] ? x[1] : y[1], a[2] > b[2] ? x[2] : y[2], a[3] > b[3] ? x[3] : y[3]}};
+}
+inline f32x4 float_of(u32x4 a) { return {{float_of(a[0]), float_of(a[1]), float_of(a[2]), float_of(a[3])}}; }
 inline f32x4 to_float(u32x4 a) {
   return {{static_cast<float>(static_cast<int32_t>(a[0])), static_cast<float>(static_cast<int32_t>(a[1])),
            static_cast<float>(static_cast<int32_t>(a[2])), static_cast<float>(static_cast<int32_t>(a[3]))}};
@@ -121,6 +125,9 @@ inline f32x4 fma(f32x4 a, f32x4 b, f32x4 c) { return _mm_fmadd_ps(a, b, c); }
 inline f32x4 sqrt(f32x4 a) { return _mm_sqrt_ps(a); }
 inline f32x4 max(f32x4 a, f32x4 b) { return _mm_max_ps(a, b); }
 inline f32x4 min(f32x4 a, f32x4 b) { return _mm_min_ps(a, b); }
+// By lane: x where a > b, else y.
+inline f32x4 select_greater(f32x4 a, f32x4 b, f32x4 x, f32x4 y) { return _mm_blendv_ps(y, x, _mm_cmpgt_ps(a, b)); }
+inline f32x4 float_of(u32x4 a) { return reinterpret_cast<f32x4>(a); }
 inline f32x4 to_float(u32x4 a) { return _mm_cvtepi32_ps(reinterpret_cast<__m128i>(a)); }
 inline u32x4 to_index(f32x4 a) { return reinterpret_cast<u32x4>(_mm_cvttps_epi32(a)); }
 

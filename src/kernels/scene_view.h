@@ -96,6 +96,22 @@ struct LightPlace {
   uint32_t primitive;  // a rectangle's is its first triangle, and the next one its second
 };
 
+// Four children of a group of lights, lane by lane; see light/tree.h.
+struct LightNode {
+  float x[4], y[4], z[4];  // middle of the lights
+  float variance[4];       // mean square of the distance from it
+  float intensity[4];      // flux over pi, relative to the scene's; 0: no child
+  uint32_t axis[4];        // mean of the normals, 10 bits for each coordinate; highest bit: both sides emit
+  uint32_t bound[4];       // radius of a sphere around the lights (16 bits), and cosine of their emission (8 bits)
+  uint32_t child[4];       // a node, or a light and tree::is_light
+};
+
+// A light that is infinitely far away: chosen beside the tree.
+struct DistantLight {
+  uint32_t light;
+  float irradiance;  // that it gives from all directions, in the unit of LightNode::intensity per m^2
+};
+
 struct Root {
   uint32_t version;
   uint32_t any_opacity;     // some material lets rays through
@@ -110,7 +126,9 @@ struct Root {
   Slice<LightRecord> lights;
   Slice<LightPlace> light_places;  // of every light; empty if no emission is textured
   Slice<InfiniteRecord> infinite_lights;
-  Slice<float> light_cdf;  // running sums of selection probabilities, lights + 1 entries
+  Slice<LightNode> light_nodes;    // the root first; empty if no light is near
+  Slice<uint32_t> light_trails;    // of every light its way from the root; none: emits nothing
+  Slice<DistantLight> distant_lights;
   Slice<uint32_t> light_of_primitive;
   Slice<uint32_t> lights_of_instance;
   Slice<SpectrumRecord> spectra;
@@ -134,7 +152,9 @@ struct SceneView {
   const LightRecord* lights;
   const LightPlace* light_places;
   const InfiniteRecord* infinite_lights;
-  const float* light_cdf;
+  const LightNode* light_nodes;
+  const uint32_t* light_trails;
+  const DistantLight* distant_lights;
   const uint32_t* light_of_primitive;
   const uint32_t* lights_of_instance;
   const SpectrumRecord* spectra;
@@ -169,7 +189,9 @@ struct SceneView {
     view.lights = view.at(root.lights);
     view.light_places = view.at(root.light_places);
     view.infinite_lights = view.at(root.infinite_lights);
-    view.light_cdf = view.at(root.light_cdf);
+    view.light_nodes = view.at(root.light_nodes);
+    view.light_trails = view.at(root.light_trails);
+    view.distant_lights = view.at(root.distant_lights);
     view.light_of_primitive = view.at(root.light_of_primitive);
     view.lights_of_instance = view.at(root.lights_of_instance);
     view.spectra = view.at(root.spectra);

@@ -396,7 +396,10 @@ Block SceneBuilder::finish() {
   if (lights_.any_textured()) root_.light_places = writer.append(lights_.places());
   for (InfiniteRecord& infinite : infinite_) infinite.hidden |= hide_infinite_ ? 1u : 0u;
   root_.infinite_lights = writer.append(infinite_);
-  root_.light_cdf = writer.append(lights_.power_cdf(scene_radius()));
+  const LightTree tree = lights_.tree(scene_radius());
+  root_.light_nodes = writer.append(tree.nodes);
+  root_.light_trails = writer.append(tree.trails);
+  root_.distant_lights = writer.append(tree.distant);
   root_.light_of_primitive = writer.append(light_of_primitive_);
   root_.lights_of_instance = writer.append(lights_of_instance_);
   root_.spectra = writer.append(spectra_.records());

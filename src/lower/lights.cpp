@@ -85,11 +85,16 @@ bool LightTable::any_textured() const {
                      [&](const LightRecord& record) { return spectra_.is_textured(record.emission); });
 }
 
-double LightTable::power_factor(const LightRecord& record, float scene_radius) const {
-  const float factor = dispatch(Lights{}, record.light.tag, [&](auto type) {
-    using L = typename decltype(type)::type;
-    return reinterpret_cast<const L*>(pool_.words().data() + record.light.offset)->power_per_radiance(scene_radius);
+// fn of the light itself.
+template <class Fn>
+auto LightTable::with_light(const LightRecord& record, Fn&& fn) const {
+  return dispatch(Lights{}, record.light.tag, [&](auto type) {
+    return fn(*reinterpret_cast<const typename decltype(type)::type*>(pool_.words().data() + record.light.offset));
   });
+}
+
+double LightTable::power_factor(const LightRecord& record, float scene_radius) const {
+  const float factor = with_light(record, [&](const auto& light) { return light.power_per_radiance(scene_radius); });
   return static_cast<double>(factor) * (record.both_sides != 0 ? 2.0 : 1.0);
 }
 
@@ -128,7 +133,25 @@ std::vector<float> running_sums(const std::vector<double>& weights) {
 
 }  // namespace
 
-std::vector<float> LightTable::power_cdf(float scene_radius) const { return running_sums(weights(scene_radius)); }
+LightTree LightTable::tree(float scene_radius) const {
+  const std::vector<double> power = weights(scene_radius);
+  std::vector<Emitter> near;
+  std::vector<DistantEmitter> distant;
+  for (uint32_t i = 0; i < records_.size(); ++i) {
+    if (!(power[i] > 0.0)) continue;
+    with_light(records_[i], [&](const auto& light) {
+      if constexpr (light.infinite) {
+        // Seen from all sides alike; the flux into the sphere around the scene, spread over the sphere.
+        const double radius = scene_radius;
+        distant.push_back({i, power[i] / (4.0 * static_cast<double>(pi) * radius * radius)});
+      } else {
+        near.push_back({i, light.bounds(), power[i], records_[i].both_sides != 0});
+      }
+      return true;
+    });
+  }
+  return build_light_tree(near, distant, records_.size());
+}
 
 std::vector<float> LightTable::lambda_cdf(float scene_radius) const {
   const std::vector<double>& cmf = spectra_.colour().cmf;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/light/list.h"
+#include "lower/light_tree.h"
 #include "lower/parameters.h"
 #include "lower/spectra.h"
 
@@ -32,12 +33,14 @@ class LightTable {
   bool any_textured() const;
   // What of each light's power its texture leaves: see texture_shares() in emission.h.
   void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
-  // Running sums of the probabilities with which lights are chosen: in proportion to their power as the sensor sees it.
-  std::vector<float> power_cdf(float scene_radius) const;
+  // What lights are chosen by: their power as the sensor sees it, where they are and where they send light.
+  LightTree tree(float scene_radius) const;
   // Running sums over the 470 cells of 1 nm: sensor response times what the lights emit.
   std::vector<float> lambda_cdf(float scene_radius) const;
 
  private:
+  template <class Fn>
+  auto with_light(const LightRecord& record, Fn&& fn) const;
   double power_factor(const LightRecord& record, float scene_radius) const;
   std::vector<double> weights(float scene_radius) const;
 

@@ -147,6 +147,7 @@ FAIR = {
     "furnace": Fair("as it is: its light comes from everywhere"),
     "glass-and-texture": Fair("the wall glows", partial(glowing, material="wall", radiance=1.0)),
     "ies": Fair("the moon 20 times as bright", partial(brightened, light="moon", factor=20)),
+    "many-lights": Fair("the sky ten times as bright", partial(brightened, light="sky", factor=10.0)),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "mipmaps": Fair("as it is: its light comes from everywhere"),
     "openpbr": Fair("the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3.0)),

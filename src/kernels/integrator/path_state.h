@@ -17,7 +17,7 @@ struct Path {
   Spectrum radiance;    // what the path has gathered
   Sampler sampler;
   Vec3 origin;         // the vertex that the ray leaves, before it was moved off its surface
-  Vec3 origin_normal;  // shading normal there; zero at the camera
+  Vec3 origin_normal;  // of the side that gathers light there; zero: both, or the camera
   float bsdf_pdf;      // density of the ray's direction; 0 after a delta lobe or at the camera
   float eta_scale;     // (eta now / eta at the camera)^2: radiance scaling, kept out of the roulette
   float alpha;         // 1 where the camera saw something

@@ -31,4 +31,10 @@ inline Frame shading_frame(const SceneView& scene, const MaterialRecord& materia
   return material.oriented == 0 ? Frame::around(normal) : Frame::along(normal, p.where.dpdu);
 }
 
+// The side that a surface gathers light from when seen from `cos_viewer`, as its normal; zero: from both.
+inline Vec3 gathering_normal(const MaterialRecord& material, const Frame& frame, float cos_viewer) {
+  if (material.interior != none) return {0.0f, 0.0f, 0.0f};
+  return cos_viewer < 0.0f ? -frame.z : frame.z;
+}
+
 }  // namespace accuray

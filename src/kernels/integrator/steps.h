@@ -118,7 +118,8 @@ template <Accel A, class BsdfAt>
 inline void sample_light(const SceneView& scene, const A& accel, Strategy strategy, const MaterialRecord& material,
                          const Surface& surface, const Frame& frame, const BsdfAt& bsdf, Vec3 wo, Vec2 u,
                          float u_choice, Path& path) {
-  const LightChoice choice = choose_light(scene, surface.point, surface.shading, path.ray.time, u_choice);
+  const Vec3 normal = gathering_normal(material, frame, wo.z);
+  const LightChoice choice = choose_light(scene, surface.point, normal, path.ray.time, u_choice);
   if (choice.light == none) return;
   const LightSample light = sample_light(scene, choice.light, surface.point, u);
   if (light.pdf == 0.0f || light.scale == 0.0f) return;
@@ -173,7 +174,7 @@ inline bool scatter(const SceneView& scene, const MaterialRecord& material, cons
   path.bsdf_pdf = sample.pdf;
   widen_cone(surface.point, sample.pdf, path);
   path.origin = surface.point;
-  path.origin_normal = surface.shading;
+  path.origin_normal = gathering_normal(material, frame, -dot(path.ray.direction, frame.z));
   path.ray.origin = offset_origin(surface.point, surface.error, surface.normal, wi);
   path.ray.direction = wi;
   path.spent += depth_cost(sample.lobe);

@@ -28,6 +28,12 @@ struct DiskLight {
     return area_to_solid_angle(area(), length_squared(at.point - reference), abs(dot(normal, wi)));
   }
   float power_per_radiance(float) const { return pi * area(); }
+  LightBounds bounds() const {
+    const Vec3 n = normal;
+    const Vec3 half = {radius * sqrt(max(0.0f, 1.0f - n.x * n.x)), radius * sqrt(max(0.0f, 1.0f - n.y * n.y)),
+                       radius * sqrt(max(0.0f, 1.0f - n.z * n.z))};
+    return {center - half, center + half, normal, 1.0f, 0.0f};
+  }
 };
 
 }  // namespace accuray

@@ -11,8 +11,8 @@
 //   - power_per_radiance(scene_radius) is the flux per unit of emission: that of one side of a surface, and what an
 //     infinite light sends into a sphere around the scene.
 //   - `infinite` lights lie beyond everything; a sample's `point` is its direction. Those whose radiance differs from
-//     direction to direction have radiance(scene, emission, wi, wl). Lights that read tables take the scene as the
-//     first argument of sample() and pdf().
+//     direction to direction have radiance(scene, emission, wi, wl). The others have bounds(), by which the light tree
+//     groups them. Lights that read tables take the scene as the first argument of sample() and pdf().
 #pragma once
 
 #include "kernels/geometry/surface.h"

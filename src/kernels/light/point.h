@@ -34,6 +34,7 @@ struct PointLight {
   LightSample sample(Vec3 reference, Vec2) const { return sample_point(reference, position); }
   float pdf(Vec3, Vec3, const Surface&) const { return 0.0f; }
   float power_per_radiance(float) const { return 4.0f * pi; }
+  LightBounds bounds() const { return {position, position, {0, 0, 1}, -1.0f, 0.0f}; }
 };
 
 }  // namespace accuray

@@ -93,6 +93,13 @@ struct QuadLight {
     return area_to_solid_angle(area(), length_squared(on_light.point - reference), abs(dot(normal, wi)));
   }
   float power_per_radiance(float) const { return pi * area(); }
+  LightBounds bounds() const {
+    const Vec3 a = corner;
+    const Vec3 b = at({1, 0});
+    const Vec3 c = at({0, 1});
+    const Vec3 d = at({1, 1});
+    return {min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), normal, 1.0f, 0.0f};
+  }
 };
 
 }  // namespace accuray

@@ -55,6 +55,10 @@ struct SphereLight {
     return area_to_solid_angle(area(), length_squared(at.point - reference), abs(dot(at.normal, wi)));
   }
   float power_per_radiance(float) const { return pi * area(); }
+  LightBounds bounds() const {
+    const Vec3 half = {radius, radius, radius};
+    return {center - half, center + half, {0, 0, 1}, -1.0f, 0.0f};
+  }
 };
 
 }  // namespace accuray

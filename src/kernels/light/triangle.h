@@ -89,6 +89,7 @@ struct TriangleLight {
     return area_to_solid_angle(area, length_squared(at.point - reference), abs(dot(normal, wi)));
   }
   float power_per_radiance(float) const { return pi * area; }
+  LightBounds bounds() const { return {min(p0, min(p1, p2)), max(p0, max(p1, p2)), normal, 1.0f, 0.0f}; }
 };
 
 }  // namespace accuray

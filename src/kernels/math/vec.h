@@ -25,6 +25,8 @@ inline float length_squared(Vec3 a) { return dot(a, a); }
 inline float length(Vec3 a) { return sqrt(length_squared(a)); }
 inline Vec3 normalize(Vec3 a) { return a * (1.0f / length(a)); }
 inline Vec3 abs(Vec3 a) { return {abs(a.x), abs(a.y), abs(a.z)}; }
+inline Vec3 min(Vec3 a, Vec3 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
+inline Vec3 max(Vec3 a, Vec3 b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; }
 inline float max_component(Vec3 a) { return max(a.x, max(a.y, a.z)); }
 
 // a*b - c*d with one rounding error less than the plain form (Kahan; see Jeannerod, Louvet and Muller 2013).
