@@ -128,7 +128,9 @@ TEST(Stl, FileEqualsMemory) {
 
 TEST(Stl, EveryTruncationAndByte) {
   for (const std::string& file : {binary(kSquare), text(kSquare)}) {
-    for (size_t size = 0; size < file.size(); ++size) EXPECT_THROW(read_stl_bytes(file.substr(0, size)), ReadError);
+    const size_t complete = file.rfind(" a b");  // what follows endsolid may be missing
+    for (size_t size = 0; size < std::min(complete, file.size()); ++size)
+      EXPECT_THROW(read_stl_bytes(file.substr(0, size)), ReadError);
     for (size_t at = 0; at < file.size(); ++at) {
       for (char byte : {'\0', '\xff', 'e'}) {
         std::string changed = file;

@@ -13,7 +13,7 @@ from accuray.formats.gltf.document import GltfDocument
 from accuray.formats.gltf.item import Item
 from accuray.formats.gltf.meshes import Meshes
 from accuray.formats.gltf.views import camera_table, light_table
-from accuray.formats.models.model import MOST_SHAPES, Model, Options, placement, unique_name
+from accuray.formats.models.model import MOST_SHAPES, Model, Options, placement
 from accuray.scene.errors import SceneError
 from accuray.scene.transforms import flattens, is_similarity
 
@@ -94,15 +94,19 @@ class SceneGraph:
             return
         if node.item.has("skin"):
             self._model.note(node.item.where.key, "its skin was left out")
-        shapes = self._model.shapes
+        shapes, place = self._model.shapes, placement(node.matrix)
         name = node.item.name(self._document.objects("meshes")[index].name(f"node {node.number}"))
         if is_similarity(node.matrix) and uses[index] > 1:
             members = self._meshes.prototypes(index)
             if members:
-                shapes[unique_name(name, shapes)] = {"type": "instance", "of": members, **placement(node.matrix)}
+                shapes[self._model.free_name(shapes, name)] = {
+                    "type": "instance",
+                    "of": members,
+                    **place,
+                }
         else:
             for table in self._meshes.tables(index):
-                shapes[unique_name(name, shapes)] = {**table, **placement(node.matrix)}
+                shapes[self._model.free_name(shapes, name)] = {**table, **place}
         if len(shapes) > MOST_SHAPES:
             raise node.item.where.error(
                 f"makes more than {MOST_SHAPES} shapes", allowed=f"up to {MOST_SHAPES} in a model"
@@ -113,7 +117,7 @@ class SceneGraph:
         if index is None:
             return
         camera = self._document.objects("cameras")[index]
-        name = unique_name(camera.name(node.item.name(f"camera {index}")), self._model.cameras)
+        name = self._model.free_name(self._model.cameras, camera.name(node.item.name(f"camera {index}")))
         self._model.cameras[name] = camera_table(camera, node.matrix, self._model)
 
     def _choose_camera(self) -> None:
@@ -143,7 +147,7 @@ class SceneGraph:
                 f"light {light.name(str(index))}", f"the renderer has no light of the type {table['type']}"
             )
             return
-        name = unique_name(node.item.name(light.name(f"light {index}")), self._model.lights)
+        name = self._model.free_name(self._model.lights, node.item.name(light.name(f"light {index}")))
         self._model.lights[name] = table
 
 

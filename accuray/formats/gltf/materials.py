@@ -10,7 +10,7 @@ from accuray.formats.gltf.document import SUPPORTED, GltfDocument
 from accuray.formats.gltf.item import Item
 from accuray.formats.gltf.textures import COLOR, DATA, Look, Textures
 from accuray.formats.models.composing import MOST_PARTS, count_parts
-from accuray.formats.models.model import Model, Options, Table, unique_name
+from accuray.formats.models.model import Model, Options, Table
 
 HEADER = ("opacity", "emission", "emission_sides", "normal_map")
 VERTEX_COLORS = "vertex colours"
@@ -56,7 +56,7 @@ class Materials:
         return self._surfaces[key]
 
     def _add(self, item: Item, fallback: str, colored: bool) -> Surface:
-        name = unique_name(item.name(fallback), self._model.materials)
+        name = self._model.free_name(self._model.materials, item.name(fallback))
         b = _Building(item, f"material {name}")
         pbr = item.table("pbrMetallicRoughness")
         factor = tuple(self._share(b, value) for value in pbr.vector("baseColorFactor", (1.0, 1.0, 1.0, 1.0)))
@@ -258,7 +258,7 @@ class Materials:
         if b.item.boolean("doubleSided") and layered and not clear and 2 * count_parts(table) <= MOST_PARTS:
             header = {key: table.pop(key) for key in HEADER if key in table}
             self._model.materials[name] = {}  # the name is taken
-            side = unique_name(f"{name}, one side", self._model.materials)
+            side = self._model.free_name(self._model.materials, f"{name}, one side")
             self._model.materials[side] = table
             table = {"type": "two_sided", "front": side, "back": side, **header}
         self._model.materials[name] = table

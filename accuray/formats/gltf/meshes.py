@@ -11,7 +11,7 @@ from accuray.formats.gltf.accessors import Accessors
 from accuray.formats.gltf.document import GltfDocument
 from accuray.formats.gltf.item import Item
 from accuray.formats.gltf.materials import Materials, Surface
-from accuray.formats.models.model import MOST_VERTICES, Model, Options, Table, mesh_table, unique_name
+from accuray.formats.models.model import MOST_VERTICES, Model, Options, Table, mesh_table
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
 MODES = 7
@@ -46,7 +46,7 @@ class Meshes:
             name, shapes = self._document.objects("meshes")[index].name(f"mesh {index}"), self._model.shapes
             self._prototypes[index] = []
             for table in self.tables(index):
-                member = unique_name(name, shapes)
+                member = self._model.free_name(shapes, name)
                 shapes[member] = {**table, "prototype": True}
                 self._prototypes[index].append(member)
         return self._prototypes[index]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from accuray.formats import image
 from accuray.formats.gltf.document import GltfDocument, data_uri, file_name
 from accuray.formats.gltf.item import Item
-from accuray.formats.models.model import Model, Table, unique_name
+from accuray.formats.models.model import Model, Table
 from accuray.formats.models.pictures import alpha_mask, tinted
 
 WRAPS = {10497: "repeat", 33648: "mirror", 33071: "clamp"}
@@ -74,7 +74,7 @@ class Textures:
     def _add(self, source: int, look: Look, settings: Table) -> str:
         item = self._document.objects("images")[source]
         table: Table = {"type": "image", **self._picture(item, source, look), **settings}
-        name = unique_name(_picture_name(item, source), self._model.textures)
+        name = self._model.free_name(self._model.textures, _picture_name(item, source))
         self._model.textures[name] = table
         return name
 

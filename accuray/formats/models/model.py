@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Table = dict[str, Any]
 
-MOST_SHAPES = 1 << 20
+MOST_SHAPES = 1 << 18
 MOST_VERTICES = 1 << 28
 """Shapes, and vertices of all meshes together, that one model may have."""
 
@@ -63,6 +63,7 @@ class Model:
     camera: str | None = None
     aspect: float | None = None
     notes: list[str] = field(default_factory=list)
+    _numbers: dict[tuple[int, str], int] = field(default_factory=dict)
 
     def note(self, place: str, text: str) -> None:
         """Says once that something could not be translated."""
@@ -70,19 +71,19 @@ class Model:
         if line not in self.notes:
             self.notes.append(line)
 
+    def free_name(self, section: dict[str, Table], wanted: str) -> str:
+        """``wanted``, or the same with a number after it that is free in this section, fit for a scene file."""
+        clean = "".join(c if c.isprintable() else "_" for c in wanted)[:MAX_NAME] or "unnamed"
+        name = clean
+        while name in section:
+            number = self._numbers.get((id(section), clean), 1) + 1
+            self._numbers[id(section), clean] = number
+            name = f"{clean}.{number}"
+        return name
+
 
 ModelReader = Callable[[Path, Options], Model]
 """Reads a file. Raises SceneError, or ValueError with file and line."""
-
-
-def unique_name(wanted: str, taken: dict[str, Any]) -> str:
-    """``wanted``, or the same with the first free number after it, fit for a scene file."""
-    clean = "".join(c if c.isprintable() else "_" for c in wanted)[:MAX_NAME] or "unnamed"
-    name, number = clean, 1
-    while name in taken:
-        number += 1
-        name = f"{clean}.{number}"
-    return name
 
 
 def placement(matrix: npt.NDArray[np.float64]) -> Table:

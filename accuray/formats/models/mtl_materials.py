@@ -6,9 +6,10 @@ Phong's exponent becomes the width of facets with a highlight alike, alpha = sqr
 from __future__ import annotations
 
 import math
+from pathlib import PurePosixPath
 from typing import Any
 
-from accuray.formats.models.model import Model, Options, Table, unique_name
+from accuray.formats.models.model import Model, Options, Table
 from accuray.formats.models.mtl import MtlMap, MtlMaterial
 from accuray.scene.errors import Document, Source, Where
 from accuray.scene.paths import display_path
@@ -157,7 +158,8 @@ class _Maps:
         for name, other in self.model.textures.items():
             if tuple((k, str(v)) for k, v in other.items()) == identity:
                 return name
-        name = unique_name(given.file.replace("\\", "/").rpartition("/")[2].rpartition(".")[0], self.model.textures)
+        stem = PurePosixPath(given.file.replace("\\", "/")).stem
+        name = self.model.free_name(self.model.textures, stem)
         self.model.textures[name] = table
         return name
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from accuray.formats.models import mtl
-from accuray.formats.models.model import Model, Options, mesh_table, unique_name
+from accuray.formats.models.model import Model, Options, mesh_table
 from accuray.formats.models.mtl import MtlMaterial
 from accuray.formats.models.mtl_materials import translate
 from accuray.formats.models.plain import COLORED, MATERIAL, note_report, place
@@ -57,7 +57,7 @@ def _part(arrays: Any, triangles: NDArray[np.intp]) -> _Part:
 def _add(model: Model, name: str, arrays: Any, material: str, options: Options) -> None:
     if len(arrays.indices):
         shape = place(mesh_table(arrays, material, options.crease_angle), options)
-        model.shapes[unique_name(name, model.shapes)] = shape
+        model.shapes[model.free_name(model.shapes, name)] = shape
 
 
 def _plain(model: Model, arrays: Any) -> str:
