@@ -48,7 +48,8 @@ def translate(m: MtlMaterial, model: Model, options: Options) -> Table:
 
 def _glossy(m: MtlMaterial, maps: _Maps, physical: bool) -> Table:
     """A matte or metallic base, glossy if the material has highlights."""
-    table: Table = {"type": "openpbr", "base_color": maps.color("map_Kd", _color(m, "Kd", 0.8))}
+    base = _color(m, "Kd", 1.0 if "map_Kd" in m.maps else 0.8)
+    table: Table = {"type": "openpbr", "base_color": maps.color("map_Kd", base)}
     if physical:
         table["specular_roughness"] = maps.number("map_Pr", _clipped(m.numbers.get("Pr", 0.5)))
         table["base_metalness"] = maps.number("map_Pm", _clipped(m.numbers.get("Pm", 0.0)))
