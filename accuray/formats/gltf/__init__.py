@@ -1,6 +1,6 @@
 """glTF 2.0 and GLB, read by json and numpy alone; no size, index or name in a file is trusted.
 
-Khronos Group 2021: glTF 2.0 Specification, and the extensions that ``document.SUPPORTED`` lists.
+The format is that of Khronos 2021, with the extensions that ``document.SUPPORTED`` lists.
 """
 
 from __future__ import annotations
