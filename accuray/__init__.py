@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from accuray.devices.lowering import Triangles, triangles
     from accuray.film import Image, ImageError, probe_writable
     from accuray.film.comparing import Comparison, compare
-    from accuray.formats import load
+    from accuray.formats import convert, load
     from accuray.render import Progress, Radiance, radiance, render
     from accuray.scene import Scene, SceneError, Spectrum
     from accuray.scene.jsonschema import json_schema
@@ -39,6 +39,7 @@ _HOMES = {
     "build_info": "accuray.devices",
     "cache_folder": "accuray.devices",
     "compare": "accuray.film.comparing",
+    "convert": "accuray.formats",
     "json_schema": "accuray.scene.jsonschema",
     "load": "accuray.formats",
     "probe_writable": "accuray.film",
@@ -62,6 +63,7 @@ __all__ = [
     "build_info",
     "cache_folder",
     "compare",
+    "convert",
     "json_schema",
     "load",
     "probe_writable",

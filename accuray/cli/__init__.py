@@ -17,7 +17,7 @@ from importlib import import_module
 
 from .parser import Parser, UsageError, nearest
 
-VERBS = ("render", "merge", "compare", "info", "verify", "schema", "doctor")
+VERBS = ("render", "merge", "compare", "info", "convert", "verify", "schema", "doctor")
 
 FAILED = 1
 USAGE = 2

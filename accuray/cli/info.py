@@ -15,19 +15,21 @@ if TYPE_CHECKING:
 
 SUMMARY = "Say what an image or a scene file contains."
 
+SCENES = (".toml", ".json", ".gltf", ".glb", ".obj", ".ply", ".stl")
+
 Facts = list[tuple[str, str]]
 
 
 def configure(parser: Parser) -> None:
     """Adds the arguments of `accuray info`."""
-    parser.add_argument("file", metavar="FILE", type=Path, help="an EXR written by AccuRay, or a scene (.toml, .json)")
+    parser.add_argument("file", metavar="FILE", type=Path, help="an EXR written by AccuRay, a scene or a model")
 
 
 def run(options: Namespace) -> int:
     """Prints one fact per line, its name in front."""
     import accuray
 
-    if options.file.suffix.lower() in (".toml", ".json"):
+    if options.file.suffix.lower() in SCENES:
         facts = scene_facts(accuray.load(options.file))
     else:
         try:

@@ -34,7 +34,12 @@ LOSSES = {
 def configure(parser: Parser) -> None:
     """Adds the flags of `accuray render`."""
     add = parser.add_argument
-    add("scene", metavar="SCENE", type=Path, help="scene file, .toml or .json")
+    add(
+        "scene",
+        metavar="SCENE",
+        type=Path,
+        help="scene file, .toml or .json; or a model: .gltf, .glb, .obj, .ply, .stl",
+    )
     add_output_flag(parser, required=False)
     what = parser.add_argument_group("what to render")
     what.add_argument("--spp", metavar="N", type=whole_number(1), help="samples per pixel (default: the scene's)")
@@ -95,6 +100,8 @@ def run(options: Namespace) -> int:
                 scene = accuray.load(options.scene, overrides=overrides(options))
             loaded = perf_counter()
             note(options, f"loaded {options.scene} in {loaded - started:.2f} s, identity {scene.identity}")
+            for text in () if options.quiet else scene.model_notes:
+                warn(options, f"not translated: {text}")
             note(options, f"rendering with {arguments['threads']} threads")
             image = render(scene, options, arguments, interrupts)
             rendered = perf_counter()

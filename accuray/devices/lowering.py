@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Callable, Iterable
 from functools import partial
 from math import fsum, inf
@@ -20,6 +21,7 @@ from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
 from accuray.scene.spectrum import interpolate
 from accuray.scene.textures import CHANNELS, TextureUse
+from accuray.scene.transforms import sine_cosine
 
 Values = dict[str, Any]
 
@@ -223,6 +225,10 @@ class _Lowering:
                 self.reports[name] = mesh.report
         if table["shading"] == "flat":
             normals = None
+        elif table["crease_angle"] is not None and normals is None:
+            cosine = least_cosine(table["crease_angle"])
+            source, faces, normals = core.creased_normals(positions, faces, cosine)
+            positions, uvs, colors = (None if a is None else a[source] for a in (positions, uvs, colors))
         elif table["shading"] == "smooth" and normals is None:
             normals = core.smooth_normals(positions, faces)
         return Triangles(positions, faces, normals, uvs, colors)
@@ -267,3 +273,9 @@ def colour_arrays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     white = [interpolate(*data.illuminants()["D65"], 360.0 + i, "zero") for i in range(471)]
     scale = fsum(observer.y) / fsum(w * y for w, y in zip(white, observer.y, strict=True))
     return cmf, np.array([w * scale for w in white])
+
+
+def least_cosine(crease_angle: float) -> float:
+    """Cosine of the largest angle, in radians, that is no crease; below all cosines for half a turn."""
+    degrees = math.degrees(crease_angle)
+    return -2.0 if degrees >= 180.0 else sine_cosine(degrees)[1]

@@ -7,17 +7,24 @@ files too: the public ``accuray.Scene`` comes from here.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import partial
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
-from accuray.formats import ies, image, json, mesh, toml
+from accuray.formats import gltf, ies, image, json, mesh, toml
+from accuray.formats.converting import convert_model
+from accuray.formats.models import obj, plain
+from accuray.formats.models.expanding import expand
+from accuray.formats.models.model import ModelReader
 from accuray.formats.reading import SceneReader, load_scene
 from accuray.scene import Scene
 from accuray.scene.images import register_image_reader
 from accuray.scene.meshes import MeshReader, register_reader
+from accuray.scene.models import register_expander
 from accuray.scene.photometry import register_photometry_reader
 
-__all__ = ["MESH_READERS", "SCENE_READERS", "Scene", "load"]
+__all__ = ["MESH_READERS", "MODEL_READERS", "SCENE_READERS", "Scene", "convert", "load"]
 
 SCENE_READERS: dict[str, SceneReader] = {
     ".toml": toml.parse,
@@ -27,12 +34,32 @@ SCENE_READERS: dict[str, SceneReader] = {
 MESH_READERS: dict[str, MeshReader] = {
     ".obj": mesh.read_obj,
     ".ply": mesh.read_ply,
+    ".stl": mesh.read_stl,
+}
+
+MODEL_READERS: dict[str, ModelReader] = {
+    ".gltf": gltf.read,
+    ".glb": gltf.read,
+    ".obj": obj.read,
+    ".ply": plain.read_ply,
+    ".stl": plain.read_stl,
 }
 
 for _suffix, _reader in MESH_READERS.items():
     register_reader(_suffix, _reader)
 register_image_reader(image.read)
 register_photometry_reader(".ies", ies.read)
+register_expander(partial(expand, readers=MODEL_READERS))
+
+
+def convert(model: str | PathLike[str], scene: str | PathLike[str]) -> list[str]:
+    """Write a model file as a scene file that can be edited.
+
+    ``scene`` gets the ending .toml; meshes and pictures go into a folder beside it, ``NAME_files`` for NAME.toml. What
+    is there under these names is replaced. Returns what could not be translated, which the scene file lists as well;
+    the scene renders as the model does. Raises SceneError for the model, OSError for what cannot be written.
+    """
+    return convert_model(Path(model), Path(scene), MODEL_READERS)
 
 
 def load(
@@ -40,10 +67,10 @@ def load(
     overrides: Iterable[str] | Mapping[str, Any] = (),
     roots: Iterable[str | PathLike[str]] = (),
 ) -> Scene:
-    """Read, merge and validate a scene file.
+    """Read, merge and validate a scene file, or a model file as a scene: by its own camera, else by one that shows it.
 
     ``overrides`` change values before validation: texts such as ``"film.width=256"`` (the value in TOML syntax,
     else taken as text) or a mapping from dotted keys to values. ``roots`` are folders, besides the scene's own
     and those in ACCURAY_PATH, that the files named in the scene may lie in. Raises SceneError.
     """
-    return load_scene(path, SCENE_READERS, overrides, roots)
+    return load_scene(path, SCENE_READERS, MODEL_READERS, overrides, roots)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,31 @@ def read(path: Path) -> NDArray[Any]:
     finally:
         source.close()
         oiio.geterror()
+
+
+def read_bytes(content: bytes, suffix: str) -> NDArray[Any]:
+    """As ``read``, from the content of a file with this suffix (".png"). Raises ValueError."""
+    with NamedTemporaryFile(suffix=suffix) as file:
+        file.write(content)
+        file.flush()
+        try:
+            return read(Path(file.name))
+        except ValueError as error:
+            raise ValueError(str(error).replace(display_path(Path(file.name)), "the picture")) from None
+
+
+def write(path: Path, pixels: NDArray[Any]) -> None:
+    """Writes (height, width, channels) as PNG (uint8, uint16) or OpenEXR (float16, float32). Raises OSError."""
+    import OpenImageIO as oiio  # noqa: N813
+
+    height, width, channels = pixels.shape
+    kinds = {"uint8": oiio.UINT8, "uint16": oiio.UINT16, "float16": oiio.HALF, "float32": oiio.FLOAT}
+    spec = oiio.ImageSpec(width, height, channels, kinds[pixels.dtype.name])
+    spec.attribute("oiio:UnassociatedAlpha", 1)
+    target = oiio.ImageOutput.create(str(path))
+    if target is None or not target.open(str(path), spec) or not target.write_image(pixels):
+        raise OSError(_message(oiio.geterror() if target is None else target.geterror(), path))
+    target.close()
 
 
 def _read(source: Any, path: Path) -> NDArray[Any]:

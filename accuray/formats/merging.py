@@ -12,7 +12,7 @@ from typing import Any
 from accuray.scene.errors import Document, Key, SceneError, Source, Where
 from accuray.scene.scene import FILE_KEYS
 
-NAMED_SECTIONS = ("textures", "materials", "lights", "shapes")
+NAMED_SECTIONS = ("models", "textures", "materials", "lights", "shapes")
 
 Path = tuple[Key, ...]
 

@@ -22,6 +22,13 @@ def read_ply(path: Path) -> dict[str, Any]:
     return _arrays(mesh.read_ply(display_path(path)))
 
 
+def read_stl(path: Path) -> dict[str, Any]:
+    """STL, ASCII or binary: arrays as ``accuray.scene.meshes.MeshReader`` says."""
+    from accuray._core import mesh
+
+    return _arrays(mesh.read_stl(display_path(path)))
+
+
 def _arrays(mesh: Any) -> dict[str, Any]:
     """The reader's arrays under the names of the shape parameters."""
     return {

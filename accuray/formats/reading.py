@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from accuray.formats.merging import apply_override, merge, parse_override
+from accuray.formats.models.expanding import model_document
+from accuray.formats.models.model import ModelReader
 from accuray.scene import Scene, SceneError
+from accuray.scene import schema as schemas
 from accuray.scene.errors import Document, Source, Where, show
 from accuray.scene.paths import Confinement, check_regular, display_path
 from accuray.scene.scene import build, check_file_keys
@@ -25,15 +28,21 @@ MAX_FILES = 1000
 def load_scene(
     path: str | PathLike[str],
     readers: Mapping[str, SceneReader],
+    models: Mapping[str, ModelReader],
     overrides: Iterable[str] | Mapping[str, Any],
     roots: Iterable[str | PathLike[str]],
 ) -> Scene:
     """See ``accuray.formats.load``."""
     shown = os.fspath(path)
-    real = _existing(shown, readers)
+    real = _existing(shown, (*readers, *models))
     folders = tuple(Path(root) for root in roots)
     files = Confinement.around(real.parent, folders)
-    document = _Reading(readers, files).read(real, shown, ())
+    notes: list[str] = []
+    if real.suffix.lower() in models:
+        lights = frozenset(schemas.current().family("light").types)
+        document, notes = model_document(real, shown, files, lights, models)
+    else:
+        document = _Reading(readers, files).read(real, shown, ())
     document.top = replace(document.top, folder=files.folders[0])
     if isinstance(overrides, str):
         overrides = (overrides,)
@@ -43,17 +52,17 @@ def load_scene(
         changes = [(f"-D {text}", *parse_override(text)) for text in overrides]
     for name, key, value in changes:
         apply_override(document, name, key, value)
-    return build(document, roots=folders, path=real)
+    return build(document, roots=folders, path=real, notes=notes)
 
 
-def _existing(shown: str, readers: Mapping[str, SceneReader]) -> Path:
-    """The scene file that the caller names: anywhere, but a regular file of a known type."""
+def _existing(shown: str, suffixes: Sequence[str]) -> Path:
+    """The scene or model file that the caller names: anywhere, but a regular file of a known type."""
     where = Where(Document({}, Source(name=shown)))
     path = Path(shown)
     if not os.path.exists(shown):
         raise SceneError(f"{show(shown)} does not exist", file=shown, value=shown, allowed="a scene file")
-    if path.suffix.lower() not in readers:
-        raise where.error("is not a scene file", value=shown, allowed="the endings " + ", ".join(readers))
+    if path.suffix.lower() not in suffixes:
+        raise where.error("is not a scene file", value=shown, allowed="the endings " + ", ".join(suffixes))
     check_regular(path, where, shown)
     return Path(os.path.realpath(path.parent)) / path.name
 

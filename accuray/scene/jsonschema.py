@@ -9,6 +9,7 @@ from accuray import data
 from accuray.scene import schema as schemas
 from accuray.scene.amounts import NAMES
 from accuray.scene.kinds import vector_length, vocabulary
+from accuray.scene.models import MODEL
 from accuray.scene.scene import FORMAT_VERSION
 from accuray.scene.schema import Family, Param, Type
 from accuray.scene.spectra import ROLES_OF_FORM
@@ -38,6 +39,7 @@ def json_schema() -> Node:
         "film": _film(schema.family("film"), schema.family("filter")),
         "camera": _one_of(schema.family("camera").types),
         "integrator": _one_of(schema.family("integrator").types),
+        "models": _named(_table(MODEL)),
         "spectra": _named({"$ref": "#/$defs/spectrum"}),
         "textures": _named(_one_of(schema.family("texture").types)),
         "materials": _named(_one_of(schema.material_types)),
@@ -230,9 +232,22 @@ def _transform() -> Node:
         "required": ["axis", "angle"],
         "additionalProperties": False,
     }
+    look_at = {
+        "type": "object",
+        "properties": {"origin": _VECTOR, "target": _VECTOR, "up": _VECTOR},
+        "required": ["origin", "target"],
+        "additionalProperties": False,
+    }
+    scale = {"anyOf": [_NUMBER, {**_NUMBERS, "minItems": 3, "maxItems": 3}]}
     step = {
         "type": "object",
-        "properties": {"translate": _VECTOR, "rotate": rotation, "scale": _NUMBER, "matrix": {"type": "array"}},
+        "properties": {
+            "translate": _VECTOR,
+            "rotate": rotation,
+            "scale": scale,
+            "matrix": {"type": "array"},
+            "look_at": look_at,
+        },
         "additionalProperties": False,
     }
     return {"anyOf": [step, {"type": "array", "items": step, "minItems": 1}]}

@@ -10,6 +10,7 @@ from accuray.scene import schema as schemas
 from accuray.scene.amounts import NAMES
 from accuray.scene.errors import show
 from accuray.scene.kinds import vocabulary
+from accuray.scene.models import MODEL
 from accuray.scene.plain import range_text
 from accuray.scene.schema import Param, Type
 from accuray.scene.units import LENGTH_UNITS
@@ -42,8 +43,10 @@ unknown one is an error that names the nearest known one.
 - **Files** lie below the folder of the scene file or an asset root (`ACCURAY_PATH`). `"builtin:NAME"` names data that
   come with the renderer: {files}.
 - **Transforms**: `{{translate = [x, y, z], rotate = {{axis = [x, y, z], angle = 30}}, scale = s}}` (scaled first, then
-  rotated, then translated), a list of such steps applied in order, or `{{matrix = [16 numbers, row by row]}}`. Rigid
-  motions with one scale; a negative scale mirrors.
+  rotated, then translated), `{{matrix = [16 numbers, row by row]}}`,
+  `{{look_at = {{origin = [x, y, z], target = [x, y, z], up = [0, 1, 0]}}}}` (moved to the origin, the -z axis turned to
+  the target), or a list of such steps applied in order. A scale is one number or three; a negative one mirrors. What
+  is made of triangles may be sheared and stretched; spheres, disks and instances may not.
 - **Arrays**: positions, normals and uvs are lists of rows; faces are lists of vertex indices that count from 0.
 
 ## Spectra
@@ -100,6 +103,7 @@ def reference_markdown() -> str:
         note = f"One of the types below; `{family.default}` if there is no such table."
         parts.append(_family(title, section, note, family.types.values()))
     header_names = "Besides its own parameters every material has the last ones of its table."
+    parts.append(f"## Models: `[models.NAME]`\n\n{MODEL.doc}\n\n{_table(MODEL.params)}")
     parts.append(_family("Textures", "textures.NAME", _TEXTURES, schema.family("texture").types.values()))
     parts.append(_family("Materials", "materials.NAME", header_names, schema.material_types.values()))
     parts.append(_family("Lights", "lights.NAME", "", schema.family("light").types.values()))

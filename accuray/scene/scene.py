@@ -16,6 +16,7 @@ from accuray.scene.environments import check_environments
 from accuray.scene.errors import Document, Source, Where
 from accuray.scene.exposure import resolve_exposure
 from accuray.scene.identity import scene_identity
+from accuray.scene.models import expand_models
 from accuray.scene.objects import expect_table, resolve_object, resolve_params
 from accuray.scene.paths import Confinement
 from accuray.scene.photometry import read_photometries
@@ -26,7 +27,7 @@ from accuray.scene.textures import check_bumps, check_opacity, check_vertices, s
 from accuray.scene.units import LENGTH_UNITS
 
 FORMAT_VERSION = 1
-SECTIONS = ("render", "film", "camera", "integrator", "spectra", "textures", "materials", "lights", "shapes")
+SECTIONS = ("render", "film", "camera", "integrator", "models", "spectra", "textures", "materials", "lights", "shapes")
 FILE_KEYS = ("accuray", "length_unit", "include")
 FILM_BITS = 24
 MAX_NAME = 256
@@ -41,7 +42,7 @@ class Scene:
     types, and every parameter of that type: SI values as ``accuray.scene.kinds`` describes, None for what is neither
     given nor has a default; a light with a measured distribution has it as "photometry". ``path`` is the file the
     scene was read from, None for scenes built in Python; ``mesh_reports`` says, by shape, what was left out of mesh
-    files or made up.
+    files or made up, ``model_notes`` what could not be translated of models.
     """
 
     film: dict[str, Any]
@@ -55,6 +56,7 @@ class Scene:
     path: Path | None = None
     mesh_reports: dict[str, dict[str, Any]] = field(default_factory=dict)
     textures: dict[str, dict[str, Any]] = field(default_factory=dict)
+    model_notes: tuple[str, ...] = ()
 
     @classmethod
     def from_dict(
@@ -81,15 +83,20 @@ class Scene:
         return scene_identity(self, schemas.current())
 
 
-def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | None = None) -> Scene:
-    """Validate a document and resolve it into a Scene. Raises SceneError."""
+def build(
+    document: Document, *, roots: Iterable[str | Path] = (), path: Path | None = None, notes: Iterable[str] = ()
+) -> Scene:
+    """Validate a document and resolve it into a Scene. ``notes`` are its ``model_notes`` so far. Raises SceneError."""
     schema = schemas.current()
     top = Where(document)
     data = expect_table(document.data, top)
     for key in data:
         if key not in SECTIONS and key not in FILE_KEYS:
             raise top.child(key).unknown(key, "section", (*FILE_KEYS, *SECTIONS))
-    scope = Scope(document, schema, Confinement.around(document.top.folder, roots))
+    files = Confinement.around(document.top.folder, roots)
+    document, more_notes = expand_models(document, schema, files)
+    top, data = Where(document), document.data
+    scope = Scope(document, schema, files)
     film, pixel_filter = _film(scope)
     textures = _named("textures", schema.family("texture").types, scope)
     materials = _named("materials", schema.material_types, scope)
@@ -120,6 +127,7 @@ def build(document: Document, *, roots: Iterable[str | Path] = (), path: Path | 
         path=path,
         mesh_reports=scope.mesh_reports,
         textures=textures,
+        model_notes=(*notes, *more_notes),
     )
 
 

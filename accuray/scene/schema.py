@@ -52,7 +52,7 @@ class Type:
     """A type of a family: ``params`` hold its own parameters and the common ones of its family.
 
     ``reads_uv``: a texture that needs shapes with texture coordinates; ``reads_colors``: one that needs meshes with
-    vertex colours.
+    vertex colours. ``rigid``: a shape that no transform may shear or stretch.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Type:
     keeps: tuple[str, ...] = ()
     reads_uv: bool = False
     reads_colors: bool = False
+    rigid: bool = False
 
     def sets(self) -> dict[str, dict[str, list[Param]]]:
         """The "exactly one of" sets: set name -> alternative -> its parameters."""
@@ -121,6 +122,7 @@ def _family(name: str, family: dict[str, Any]) -> Family:
             tuple(entry.get("keeps", ())),
             bool(entry.get("reads_uv", False)),
             bool(entry.get("reads_colors", False)),
+            bool(entry.get("rigid", False)),
         )
         for entry in family.get("types", ())
     }

@@ -6,6 +6,7 @@ from typing import Any
 
 from accuray.scene.errors import Where
 from accuray.scene.schema import Param, Schema, Type
+from accuray.scene.transforms import check_rigid
 
 Shapes = dict[str, dict[str, Any]]
 
@@ -13,10 +14,12 @@ Shapes = dict[str, dict[str, Any]]
 def check_shapes(shapes: Shapes, schema: Schema, where: Where) -> None:
     """Every shape has a material or is made of other shapes; those are prototypes, and one level deep.
 
-    Raises SceneError.
+    Shapes that would be others if they were stretched are not. Raises SceneError.
     """
     types = schema.family("shape").types
     for name, shape in shapes.items():
+        if types[shape["type"]].rigid and shape["transform"] is not None:
+            check_rigid(shape["transform"], shape["type"], where.child(name, "transform"))
         links = _links(types[shape["type"]])
         if shape["material"] is None and not links:
             raise where.child(name).error("has no material", allowed='material = "NAME" of a table in [materials]')

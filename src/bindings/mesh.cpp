@@ -8,6 +8,7 @@
 #include "mesh/normals.h"
 #include "mesh/obj.h"
 #include "mesh/ply.h"
+#include "mesh/stl.h"
 
 namespace accuray::bindings {
 
@@ -15,8 +16,9 @@ namespace {
 
 // A mesh as numpy arrays that own the reader's memory.
 struct PyMesh {
-  nb::object positions, indices, normals, uvs, colors;
+  nb::object positions, indices, normals, uvs, colors, materials;
   nb::dict report;
+  std::vector<std::string> material_names, libraries;
 };
 
 nb::dict describe(const mesh::MeshReport& report) {
@@ -39,10 +41,14 @@ PyMesh to_python(mesh::MeshData data) {
                 nb::none(),
                 nb::none(),
                 nb::none(),
-                describe(data.report)};
+                nb::none(),
+                describe(data.report),
+                std::move(data.material_names),
+                std::move(data.libraries)};
   if (!data.normals.empty()) result.normals = to_numpy(std::move(data.normals), 3);
   if (!data.uvs.empty()) result.uvs = to_numpy(std::move(data.uvs), 2);
   if (!data.colors.empty()) result.colors = to_numpy(std::move(data.colors), 4);
+  if (!data.materials.empty()) result.materials = to_numpy(std::move(data.materials), 0);
   return result;
 }
 
@@ -85,6 +91,13 @@ nb::object smooth_normals(const Rows<float, 3>& positions, const Rows<uint32_t, 
   return to_numpy(mesh::smooth_normals({positions.data(), positions.size()}, {indices.data(), indices.size()}), 3);
 }
 
+nb::tuple creased_normals(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices, double least_cosine) {
+  mesh::CreasedMesh creased =
+      mesh::creased_normals({positions.data(), positions.size()}, {indices.data(), indices.size()}, {}, least_cosine);
+  return nb::make_tuple(to_numpy(std::move(creased.source), 0), to_numpy(std::move(creased.indices), 3),
+                        to_numpy(std::move(creased.normals), 3));
+}
+
 }  // namespace
 
 void bind_mesh(nb::module_& module) {
@@ -96,12 +109,18 @@ void bind_mesh(nb::module_& module) {
       .def_ro("normals", &PyMesh::normals)
       .def_ro("uvs", &PyMesh::uvs)
       .def_ro("colors", &PyMesh::colors, "Linear red, green, blue and alpha.")
+      .def_ro("materials", &PyMesh::materials, "Index into material_names of each triangle.")
+      .def_ro("material_names", &PyMesh::material_names)
+      .def_ro("libraries", &PyMesh::libraries, "What an OBJ file says after mtllib.")
       .def_ro("report", &PyMesh::report);
   m.def("read_obj", &read<&mesh::read_obj>, "path"_a, "Reads a Wavefront OBJ file.");
   m.def("read_ply", &read<&mesh::read_ply>, "path"_a, "Reads a PLY file.");
+  m.def("read_stl", &read<&mesh::read_stl>, "path"_a, "Reads an STL file.");
   m.def("repair", &repair, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(),
         "Drops and counts what cannot be rendered.");
   m.def("smooth_normals", &smooth_normals, "positions"_a, "indices"_a, "One unit normal per vertex.");
+  m.def("creased_normals", &creased_normals, "positions"_a, "indices"_a, "least_cosine"_a,
+        "Old vertex of each new one, indices and normals, smooth except across edges.");
 }
 
 }  // namespace accuray::bindings

@@ -88,6 +88,7 @@ nb::dict family(TypeList<Ts...>, nb::list common) {
     d["keeps"] = laws_of<T>();
     if constexpr (requires { T::reads_uv; }) d["reads_uv"] = T::reads_uv;
     if constexpr (requires { T::reads_colors; }) d["reads_colors"] = T::reads_colors;
+    if constexpr (requires { T::rigid; }) d["rigid"] = T::rigid;
     types.append(d);
   };
   (add(Type<Ts>{}), ...);

@@ -51,7 +51,11 @@ MeshArrays rectangle_mesh(const Values& values) {
 // Applies a transform to a mesh; mirroring turns the winding around so that the front side stays the front side.
 void move_mesh(const Matrix& m, MeshArrays& mesh) {
   transform_array<true>(m, mesh.positions);
-  transform_array<false>(m, mesh.normals);
+  if (is_similarity(m)) {
+    transform_array<false>(m, mesh.normals);
+  } else {
+    transform_normals(m, mesh.normals);
+  }
   if (determinant(m) < 0.0) {
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
   }

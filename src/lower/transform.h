@@ -36,6 +36,33 @@ inline Transform to_transform(const Matrix& m) {
   return t;
 }
 
+// Whether the transform is a rotation or reflection times one scale, plus a translation.
+inline bool is_similarity(const Matrix& m) {
+  constexpr double tolerance = 1e-5;
+  const double s2 = m[0] * m[0] + m[4] * m[4] + m[8] * m[8];
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = i; j < 3; ++j) {
+      const double product = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+      if (!(std::fabs(product - (i == j ? s2 : 0.0)) <= tolerance * s2)) return false;
+    }
+  }
+  return true;
+}
+
+// What normals are multiplied with, up to a positive factor: the inverse transposed, made of cofactors.
+inline Matrix normal_matrix(const Matrix& m) {
+  const double sign = determinant(m) < 0.0 ? -1.0 : 1.0;
+  Matrix r{};
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t a = 4 * ((i + 1) % 3), b = 4 * ((i + 2) % 3);
+    for (size_t j = 0; j < 3; ++j) {
+      const size_t c = (j + 1) % 3, d = (j + 2) % 3;
+      r[4 * i + j] = sign * (m[a + c] * m[b + d] - m[a + d] * m[b + c]);
+    }
+  }
+  return r;
+}
+
 // Inverse of a rigid transform with uniform scale: transposed linear part over the squared scale.
 inline Matrix inverse(const Matrix& m) {
   const double s2 = m[0] * m[0] + m[4] * m[4] + m[8] * m[8];
@@ -53,6 +80,16 @@ inline void transform_array(const Matrix& m, std::span<float> values) {
     const std::array<double, 3> v = {values[i], values[i + 1], values[i + 2]};
     const auto w = Point ? transform_point(m, v) : transform_vector(m, v);
     for (size_t k = 0; k < 3; ++k) values[i + k] = static_cast<float>(w[k]);
+  }
+}
+
+// Unit normals under a transform that may shear or stretch.
+inline void transform_normals(const Matrix& m, std::span<float> normals) {
+  const Matrix n = normal_matrix(m);
+  for (size_t i = 0; i + 2 < normals.size(); i += 3) {
+    const auto w = transform_vector(n, {normals[i], normals[i + 1], normals[i + 2]});
+    const double length = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    for (size_t k = 0; k < 3; ++k) normals[i + k] = static_cast<float>(w[k] / length);
   }
 }
 

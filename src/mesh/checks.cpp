@@ -46,10 +46,14 @@ void drop_triangles(MeshData& mesh) {
       ++mesh.report.degenerate_triangles;
     } else {
       for (size_t i = 0; i < 3; ++i) mesh.indices[kept + i] = mesh.indices[corner + i];
+      if (!mesh.materials.empty()) mesh.materials[kept / 3] = mesh.materials[corner / 3];
+      if (!mesh.smoothing_groups.empty()) mesh.smoothing_groups[kept / 3] = mesh.smoothing_groups[corner / 3];
       kept += 3;
     }
   }
   mesh.indices.resize(kept);
+  if (!mesh.materials.empty()) mesh.materials.resize(kept / 3);
+  if (!mesh.smoothing_groups.empty()) mesh.smoothing_groups.resize(kept / 3);
 }
 
 // Moves the entries of `values`, `width` per vertex, to their new numbers.
@@ -80,13 +84,19 @@ void drop_vertices(MeshData& mesh) {
   for (uint32_t& index : mesh.indices) index = number[index];
 }
 
+// Lengths that a unit vector has after its rounding to floats; such normals stay as they are, so that a mesh that is
+// written and read again has the same bits.
+constexpr double kUnit = 0x1p-23;
+
 void repair_normals(MeshData& mesh) {
   uint64_t bad = 0;
   for (size_t i = 0; i < mesh.normals.size(); i += 3) {
     float* n = &mesh.normals[i];
     double length = std::sqrt(squared({n[0], n[1], n[2]}));
     bool good = std::isfinite(length) && length > 0.0;
-    for (size_t j = 0; j < 3; ++j) n[j] = good ? static_cast<float>(n[j] / length) : 0.0f;
+    if (!(std::fabs(length - 1.0) <= kUnit)) {
+      for (size_t j = 0; j < 3; ++j) n[j] = good ? static_cast<float>(n[j] / length) : 0.0f;
+    }
     bad += good ? 0 : 1;
   }
   mesh.report.generated_normals += bad;

@@ -1,10 +1,12 @@
 #include "mesh/normals.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include "mesh/index_table.h"
 
@@ -138,6 +140,116 @@ std::vector<float> smooth_normals(std::span<const float> positions, std::span<co
     }
   }
   return normals;
+}
+
+namespace {
+
+// The corners at one position, and which of them are one smooth piece of surface.
+class Fan {
+ public:
+  void clear() {
+    corners_.clear();
+    rays_.clear();
+  }
+  // `next` and `previous`: the positions of the other corners of the triangle.
+  void add(uint32_t corner, uint32_t next, uint32_t previous) {
+    uint32_t number = static_cast<uint32_t>(corners_.size());
+    corners_.push_back({corner, number});
+    rays_.push_back({next, number});
+    rays_.push_back({previous, number});
+  }
+  // Joins the corners on both sides of each edge for which smooth(corner, corner) holds.
+  template <class Smooth>
+  void join(Smooth smooth) {
+    std::sort(rays_.begin(), rays_.end());
+    for (size_t i = 1; i < rays_.size(); ++i) {
+      if (rays_[i].first != rays_[i - 1].first) continue;
+      uint32_t a = rays_[i - 1].second, b = rays_[i].second;
+      if (smooth(corners_[a].corner, corners_[b].corner)) unite(a, b);
+    }
+  }
+  size_t size() const { return corners_.size(); }
+  uint32_t corner(size_t i) const { return corners_[i].corner; }
+  // The number of one corner of the piece that corner i belongs to.
+  uint32_t piece(size_t i) {
+    uint32_t root = static_cast<uint32_t>(i);
+    while (corners_[root].parent != root) root = corners_[root].parent = corners_[corners_[root].parent].parent;
+    return root;
+  }
+
+ private:
+  struct Member {
+    uint32_t corner, parent;
+  };
+  void unite(uint32_t a, uint32_t b) {
+    uint32_t x = piece(a), y = piece(b);
+    corners_[std::max(x, y)].parent = std::min(x, y);
+  }
+  std::vector<Member> corners_;
+  std::vector<std::pair<uint32_t, uint32_t>>
+      rays_;  // the position at the other end of an edge, and the corner's number
+};
+
+// Corners in the order of the positions that they are at: those of position p are [start[p], start[p + 1]).
+struct CornersByPosition {
+  std::vector<uint32_t> start, corners;
+
+  CornersByPosition(std::span<const uint32_t> indices, const std::vector<uint32_t>& first)
+      : start(first.size() + 1), corners(indices.size()) {
+    for (uint32_t vertex : indices) ++start[first[vertex] + 1];
+    for (size_t p = 0; p < first.size(); ++p) start[p + 1] += start[p];
+    std::vector<uint32_t> next(start.begin(), start.end() - 1);
+    for (uint32_t c = 0; c < indices.size(); ++c) corners[next[first[indices[c]]]++] = c;
+  }
+};
+
+}  // namespace
+
+CreasedMesh creased_normals(std::span<const float> positions, std::span<const uint32_t> indices,
+                            std::span<const uint32_t> groups, double least_cosine) {
+  std::vector<uint32_t> first = weld(positions);
+  CornersByPosition around(indices, first);
+  auto triangle = [&](uint32_t corner) { return triangle_at(positions, indices, corner - corner % 3); };
+  auto smooth = [&](uint32_t a, uint32_t b) {
+    if (!groups.empty() && (groups[a / 3] != groups[b / 3] || groups[a / 3] == 0)) return false;
+    Vec3 m = triangle(a).normal, n = triangle(b).normal;
+    return m[0] * n[0] + m[1] * n[1] + m[2] * n[2] >= least_cosine;
+  };
+  auto other = [&](uint32_t corner, uint32_t step) {
+    return first[indices[corner - corner % 3 + (corner + step) % 3]];
+  };
+
+  CreasedMesh result;
+  result.indices.resize(indices.size());
+  Fan fan;
+  std::vector<Sum> sums;
+  std::vector<std::array<uint32_t, 3>> order;  // piece, old vertex, number in the fan
+  for (size_t p = 0; p < first.size(); ++p) {
+    fan.clear();
+    for (uint32_t i = around.start[p]; i < around.start[p + 1]; ++i) {
+      uint32_t corner = around.corners[i];
+      fan.add(corner, other(corner, 1), other(corner, 2));
+    }
+    fan.join(smooth);
+    sums.assign(fan.size(), {});
+    order.clear();
+    for (uint32_t i = 0; i < fan.size(); ++i) {
+      Triangle t = triangle(fan.corner(i));
+      sums[fan.piece(i)].add(t.normal, t.angle[fan.corner(i) % 3]);
+      order.push_back({fan.piece(i), indices[fan.corner(i)], i});
+    }
+    std::sort(order.begin(), order.end());
+    for (size_t i = 0; i < order.size(); ++i) {
+      auto [piece, vertex, number] = order[i];
+      if (i == 0 || order[i - 1][0] != piece || order[i - 1][1] != vertex) {
+        Vec3 n = sums[piece].points_somewhere() ? unit(sums[piece].normal) : triangle(fan.corner(number)).normal;
+        result.source.push_back(vertex);
+        for (double x : n) result.normals.push_back(static_cast<float>(x));
+      }
+      result.indices[fan.corner(number)] = static_cast<uint32_t>(result.source.size() - 1);
+    }
+  }
+  return result;
 }
 
 }  // namespace accuray::mesh

@@ -18,4 +18,21 @@ namespace accuray::mesh {
 // Only + - * / and sqrt are used, so the result has the same bits on every machine.
 std::vector<float> smooth_normals(std::span<const float> positions, std::span<const uint32_t> indices);
 
+// A mesh whose vertices are split where its surface has edges: vertex i is a copy of vertex source[i].
+struct CreasedMesh {
+  std::vector<uint32_t> source;
+  std::vector<uint32_t> indices;  // 3 M
+  std::vector<float> normals;     // 3 per vertex, unit
+};
+
+// Normals that are smooth except across edges. Two triangles are smooth across the edge between them if their normals
+// have a cosine of at least `least_cosine` and, where `groups` is not empty (one number per triangle), if they are of
+// the same group other than 0. The normal of a vertex is the mean over those triangles that reach each other around it
+// across smooth edges, weighted as by smooth_normals(); where these cancel, that of the triangle itself.
+//
+// positions and indices as for smooth_normals(). Positions, not vertices, tell which triangles are neighbours. Where
+// more than two triangles share an edge, each is compared with the next.
+CreasedMesh creased_normals(std::span<const float> positions, std::span<const uint32_t> indices,
+                            std::span<const uint32_t> groups, double least_cosine);
+
 }  // namespace accuray::mesh

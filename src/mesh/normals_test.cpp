@@ -90,5 +90,66 @@ TEST(Normals, OfVerticesWithoutTriangles) {
   EXPECT_TRUE(smooth_normals(Floats{}, Indices{}).empty());
 }
 
+// A strip of four squares along x whose edges bend by 30 degrees and by 60 in turn.
+struct Strip {
+  Floats positions;
+  Indices indices;
+  Strip() {
+    double x = 0.0, y = 0.0, angle = 0.0;
+    for (uint32_t i = 0; i < 5; ++i) {
+      for (float z : {0.0f, 1.0f}) positions.insert(positions.end(), {float(x), float(y), z});
+      x += std::cos(angle), y += std::sin(angle);
+      angle += (i % 2 == 0 ? 30.0 : 60.0) * M_PI / 180.0;
+      if (i > 0) indices.insert(indices.end(), {2 * i - 2, 2 * i - 1, 2 * i, 2 * i, 2 * i - 1, 2 * i + 1});
+    }
+  }
+};
+
+TEST(CreasedNormals, AreSmoothAcrossBluntEdgesOnly) {
+  const Strip strip;
+  auto count = [&](double degrees) {
+    return creased_normals(strip.positions, strip.indices, {}, std::cos(degrees * M_PI / 180.0)).source.size();
+  };
+  EXPECT_EQ(count(10.0), 16u);  // each square has its own corners; the two triangles of a square share two
+  EXPECT_EQ(count(45.0), 12u);  // one of three bent edges stays sharp
+  EXPECT_EQ(count(70.0), 10u);
+  const CreasedMesh mesh = creased_normals(strip.positions, strip.indices, {}, std::cos(M_PI / 4));
+  ASSERT_EQ(mesh.indices.size(), strip.indices.size());
+  for (size_t i = 0; i < mesh.indices.size(); ++i) EXPECT_EQ(mesh.source[mesh.indices[i]], strip.indices[i]);
+  const size_t at = mesh.indices[2];  // between the first two squares, which lie at 0 and 30 degrees
+  EXPECT_NEAR(std::fabs(mesh.normals[3 * at]), std::sin(M_PI / 12), 1e-6);
+  EXPECT_NEAR(std::fabs(mesh.normals[3 * at + 1]), std::cos(M_PI / 12), 1e-6);
+}
+
+TEST(CreasedNormals, OfEverySmoothEdgeAreTheSmoothOnes) {
+  const Strip strip;
+  const CreasedMesh mesh = creased_normals(strip.positions, strip.indices, {}, -2.0);
+  const Floats smooth = smooth_normals(strip.positions, strip.indices);
+  ASSERT_EQ(mesh.source.size(), strip.positions.size() / 3);
+  for (size_t i = 0; i < mesh.source.size(); ++i) {
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(mesh.normals[3 * i + k], smooth[3 * mesh.source[i] + k], 1e-6);
+  }
+}
+
+TEST(CreasedNormals, GroupZeroIsFlat) {
+  const Strip strip;
+  const Indices groups = {0, 0, 1, 1, 1, 1, 2, 2};
+  const CreasedMesh mesh = creased_normals(strip.positions, strip.indices, groups, -2.0);
+  EXPECT_EQ(mesh.source.size(), 6u + 6u + 4u);  // two triangles apart, two squares together, one by itself
+}
+
+TEST(CreasedNormals, SurviveManyTrianglesAtOneEdge) {
+  Floats positions = {0, 0, 0, 0, 0, 1};
+  Indices indices;
+  for (uint32_t i = 0; i < 20000; ++i) {
+    positions.insert(positions.end(), {std::cos(float(i)), std::sin(float(i)), 0.0f});
+    indices.insert(indices.end(), {0, 1, i + 2});
+  }
+  const CreasedMesh mesh = creased_normals(positions, indices, {}, 0.5);
+  for (size_t i = 0; i < mesh.normals.size(); i += 3) {
+    ASSERT_NEAR(std::hypot(mesh.normals[i], mesh.normals[i + 1], mesh.normals[i + 2]), 1.0, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace accuray::mesh

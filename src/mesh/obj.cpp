@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <limits>
+#include <system_error>
+#include <unordered_map>
 #include <utility>
 
 #include "mesh/checks.h"
 #include "mesh/error.h"
 #include "mesh/index_table.h"
 #include "mesh/input.h"
+#include "mesh/normals.h"
 #include "mesh/text.h"
 
 namespace accuray::mesh {
@@ -48,11 +52,35 @@ class ObjReader {
     check_references();
     gather();
     repair(mesh_);
+    smooth();
     mesh_.indices.shrink_to_fit();
     return std::move(mesh_);
   }
 
  private:
+  // Smoothing groups make the normals of a file that has none.
+  void smooth() {
+    if (mesh_.smoothing_groups.empty() || !mesh_.normals.empty()) return;
+    CreasedMesh creased = creased_normals(mesh_.positions, mesh_.indices, mesh_.smoothing_groups, -2.0);
+    mesh_.report.generated_normals += creased.source.size();
+    take(mesh_.positions, 3, creased.source);
+    take(mesh_.uvs, 2, creased.source);
+    take(mesh_.colors, 4, creased.source);
+    mesh_.indices = std::move(creased.indices);
+    mesh_.normals = std::move(creased.normals);
+  }
+
+  // The rows of a list, `width` wide, that `source` names.
+  static void take(std::vector<float>& values, size_t width, const std::vector<uint32_t>& source) {
+    if (values.empty()) return;
+    std::vector<float> taken;
+    taken.reserve(source.size() * width);
+    for (uint32_t row : source) {
+      for (size_t i = 0; i < width; ++i) taken.push_back(values[row * width + i]);
+    }
+    values = std::move(taken);
+  }
+
   // Whether a line goes on in the next. Comments do not: many name a Windows folder at their end.
   static bool continues(std::string_view line) { return line.ends_with('\\') && line.find('#') == line.npos; }
 
@@ -88,6 +116,12 @@ class ObjReader {
       read_numbers(words, keyword, 1, 3, uvs_);
     } else if (keyword == "f") {
       read_face(words);
+    } else if (keyword == "usemtl") {
+      use_material(rest_of(words));
+    } else if (keyword == "mtllib") {
+      mesh_.libraries.emplace_back(rest_of(words));
+    } else if (keyword == "s") {
+      read_smoothing_group(words);
     } else if (std::find(kIgnored.begin(), kIgnored.end(), keyword) == kIgnored.end()) {
       if (mesh_.report.unknown++ == 0) {
         mesh_.report.first_unknown = std::string(keyword.substr(0, 60)) + " in line " + std::to_string(first_line_);
@@ -143,6 +177,52 @@ class ObjReader {
       previous = vertex;
     }
     if (count < 3) fail("f", "", std::string("has ") + std::to_string(count) + " corners", "3 or more corners");
+    mark_triangles();
+  }
+
+  // Gives the latest triangles the material and the smoothing group that hold now. The lists begin with the first one
+  // that has any.
+  void mark_triangles() {
+    size_t triangles = mesh_.indices.size() / 3;
+    if (material_ != kNone) mesh_.materials.resize(triangles, material_);
+    if (smoothing_group_ != 0) any_smoothing_ = true;
+    if (any_smoothing_) mesh_.smoothing_groups.resize(triangles, smoothing_group_);
+  }
+
+  // The rest of a line without the blanks at its ends and without a comment: names of materials have blanks in them.
+  static std::string_view rest_of(Words& words) {
+    if (words.at_end()) return {};
+    std::string_view text = words.rest();
+    text = text.substr(0, text.find(" #"));
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+  }
+
+  void use_material(std::string_view name) {
+    if (name.size() > kMaxName) fail("material name", name, "is too long", std::to_string(kMaxName) + " bytes");
+    // Faces before the first name have none.
+    if (material_ == kNone && !mesh_.indices.empty()) {
+      mesh_.material_names.emplace_back();
+      numbers_.emplace("", 0);
+      mesh_.materials.assign(mesh_.indices.size() / 3, 0);
+    }
+    auto [place, fresh] = numbers_.try_emplace(std::string(name), static_cast<uint32_t>(mesh_.material_names.size()));
+    if (fresh) mesh_.material_names.emplace_back(name);
+    material_ = place->second;
+  }
+
+  void read_smoothing_group(Words& words) {
+    std::string_view text = words.word();
+    if (text.empty() || text == "off") {
+      smoothing_group_ = 0;
+    } else if (text == "on") {
+      smoothing_group_ = 1;
+    } else {
+      auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), smoothing_group_);
+      if (error != std::errc{} || end != text.data() + text.size()) {
+        fail("smoothing group", text, "is no number", "a whole number from 0 to 4294967295, or off");
+      }
+    }
   }
 
   // v, v/t, v//n or v/t/n; a part may be left empty except the first.
@@ -269,7 +349,8 @@ class ObjReader {
     throw ReadError(input_.name(), {first_line_}, subject, value, problem, allowed);
   }
 
-  static constexpr std::array<std::string_view, 7> kIgnored = {"g", "o", "s", "usemtl", "mtllib", "p", "l"};
+  static constexpr std::array<std::string_view, 4> kIgnored = {"g", "o", "p", "l"};
+  static constexpr size_t kMaxName = 200;
 
   Input input_;
   uint64_t first_line_ = 0;
@@ -281,7 +362,11 @@ class ObjReader {
   std::vector<float> colors_;    // 3 per position; empty before the first one that has a colour
   std::vector<Corner> corners_;  // the distinct ones: corner i becomes vertex i
   IndexTable table_;
-  std::vector<uint32_t> latest_;  // per position, the vertex it was used as last; kNone if unused
+  uint32_t material_ = kNone;     // of the faces to come; kNone before the first usemtl
+  uint32_t smoothing_group_ = 0;  // likewise
+  bool any_smoothing_ = false;
+  std::unordered_map<std::string, uint32_t> numbers_;  // of the materials
+  std::vector<uint32_t> latest_;                       // per position, the vertex it was used as last; kNone if unused
   MeshData mesh_;
 };
 

@@ -15,7 +15,9 @@ namespace accuray::mesh {
 // vn  3 numbers.
 // f   at least 3 corners v, v/t, v//n or v/t/n; an index counts from 1, or back from the latest if negative. A positive
 //     one may refer to a later line. A polygon is cut into a fan around its first corner, so it should be convex.
-// Ignored: g, o, s, usemtl, mtllib, p, l. Other keywords are counted in the report.
+// usemtl, mtllib: the material of each triangle by its name, and what the file says of where materials are.
+// s   the smoothing group of the faces that follow, 0 or off for none. Groups make the normals of a file that has no
+// vn. Ignored: g, o, p, l. Other keywords are counted in the report.
 //
 // Corners with equal v, t and n share a vertex; vertices come in the order in which faces use them. If some corners
 // have a normal and others have none, those others get smooth normals; likewise a missing uv becomes (0, 0), a missing

@@ -103,6 +103,44 @@ TEST(Obj, KeywordsIgnoredAndUnknown) {
   EXPECT_EQ(mesh.report.first_unknown, "curv2 in line 8");
 }
 
+TEST(Obj, MaterialsOfTriangles) {
+  MeshData mesh =
+      read_obj_text("mtllib a.mtl b c.mtl # x\n" + kSquare +
+                    "f 1 2 3\nusemtl red paint \nf 1 2 3 4\nusemtl blue#1\nf 1 1 2\nf 1 3 4\nusemtl red paint\n"
+                    "f 2 3 4\n");
+  EXPECT_EQ(mesh.material_names, (std::vector<std::string>{"", "red paint", "blue#1"}));
+  EXPECT_EQ(mesh.materials, (Indices{0, 1, 1, 2, 1}));  // without that of the triangle that has no area
+  EXPECT_EQ(mesh.libraries, (std::vector<std::string>{"a.mtl b c.mtl"}));
+  EXPECT_TRUE(read_obj_text(kSquare + "f 1 2 3\n").materials.empty());
+  EXPECT_EQ(read_obj_text("usemtl x\n" + kSquare + "f 1 2 3\n").materials, (Indices{0}));
+}
+
+// Two squares that meet at a right angle.
+const std::string kEdge = kSquare + "v 1 0 -1\nv 1 1 -1\n";
+
+TEST(Obj, SmoothingGroupsMakeNormals) {
+  const float half = std::sqrt(0.5f);
+  MeshData one = read_obj_text(kEdge + "s 1\nf 1 2 3 4\nf 2 5 6 3\n");
+  expect_valid(one);
+  EXPECT_EQ(one.positions.size(), 3u * 6);
+  for (size_t i = 0; i < 6; ++i) {
+    bool edge = one.positions[3 * i] == 1.0f && one.positions[3 * i + 2] == 0.0f;
+    EXPECT_NEAR(one.normals[3 * i], edge ? half : one.positions[3 * i + 2] == -1.0f ? 1.0f : 0.0f, 1e-6);
+  }
+  MeshData two = read_obj_text(kEdge + "s 1\nf 1 2 3 4\ns 2\nf 2 5 6 3\n");
+  EXPECT_EQ(two.positions.size(), 3u * 8);
+  for (size_t i = 0; i < 8; ++i) EXPECT_EQ(two.normals[3 * i] + two.normals[3 * i + 2], 1.0f);
+}
+
+TEST(Obj, WithoutSmoothingGroupsOrWithNormalsNothingIsSmoothed) {
+  EXPECT_TRUE(read_obj_text(kEdge + "f 1 2 3 4\ns off\nf 2 5 6 3\n").normals.empty());
+  MeshData given = read_obj_text(kEdge + "vn 0 1 0\ns 1\nf 1//1 2//1 3//1\n");
+  EXPECT_EQ(given.normals, (Floats{0, 1, 0, 0, 1, 0, 0, 1, 0}));
+  expect_obj_error(kEdge + "s x\n",
+                   "7: smoothing group 'x' is no number: allowed a whole number from 0 to "
+                   "4294967295, or off");
+}
+
 TEST(Obj, UnusableTrianglesAreCountedAndTheRestIsRead) {
   MeshData mesh = read_obj_text(kSquare +
                                 "v nan 0 0\nv 1e300 0 -inf\nv 2e18 0 0\nv 1.#QNAN 0 0\nv 0 0 0\n"

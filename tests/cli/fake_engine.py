@@ -74,6 +74,7 @@ class FakeEngine:
             materials={},
             lights={"sky": {"type": "constant"}},
             identity="feed",
+            model_notes=(),
         )
 
     def render(self, _scene: object, **arguments: Any) -> FakeImage:

@@ -22,6 +22,8 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "pyramid.obj").write_text(PYRAMID, encoding="utf-8")
     for picture in (REPOSITORY / "scenes/textures").iterdir():
         (tmp_path / picture.name).write_bytes(picture.read_bytes())
+    (tmp_path / "models").mkdir()
+    (tmp_path / "models/chess.glb").write_bytes((REPOSITORY / "scenes/models/chess.glb").read_bytes())
     for block in (*blocks(PAGE, "csv"), *blocks(PAGE, "toml")):
         if name := FILE_NAME.match(block.text):
             (tmp_path / name[1]).write_text(block.text, encoding="utf-8")
@@ -40,7 +42,7 @@ def test_example_is_a_scene(block: Block, folder: Path) -> None:
 
 def test_examples_cover_every_section() -> None:
     text = "".join(block.text for block in blocks(PAGE, "toml"))
-    for section in ("film", "camera", "spectra", "textures", "materials", "lights", "shapes"):
+    for section in ("film", "camera", "models", "spectra", "textures", "materials", "lights", "shapes"):
         assert re.search(rf"^\[{section}\b", text, re.MULTILINE), section
 
 

@@ -296,7 +296,10 @@ VALUES = [
     ),
     scene("radius-negative", '[shapes.s]\ntype = "sphere"\nradius = -1\n', "shapes.s.radius: -1", "at least"),
     scene(
-        "scale-list", '[shapes.s]\ntype = "sphere"\ntransform = {scale = [1, 2, 3]}\n', "transform.scale", "not uniform"
+        "scale-list",
+        '[shapes.s]\ntype = "sphere"\ntransform = {scale = [1, 2, 3]}\n',
+        "transform",
+        "shears or stretches",
     ),
     scene(
         "scale-zero", '[shapes.s]\ntype = "sphere"\ntransform = {scale = 0}\n', "shapes.s.transform.scale: 0", "than 0"
@@ -309,7 +312,7 @@ VALUES = [
     scene(
         "matrix-shear",
         '[shapes.s]\ntype = "sphere"\ntransform = {matrix = [1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n',
-        "scene.toml:4: shapes.s.transform.matrix",
+        "scene.toml:4: shapes.s.transform",
         "shears",
         "rotation times one scale",
     ),
@@ -533,11 +536,11 @@ MESHES = [
     mesh("file-missing", 'file = "a.obj"\n', "scene.toml:7: shapes.s.file", '"a.obj" does not exist'),
     mesh(
         "file-type",
-        'file = "a.stl"\n',
+        'file = "a.3ds"\n',
         "scene.toml:7: shapes.s.file",
-        '"a.stl"',
+        '"a.3ds"',
         ".obj, .ply",
-        files={"a.stl": "solid"},
+        files={"a.3ds": "solid"},
     ),
     mesh("file-up", 'file = "../a.obj"\n', "scene.toml:7: shapes.s.file", "leads outside"),
     mesh(

@@ -92,10 +92,12 @@ def numeric_fields() -> list[Any]:
 
 
 #: One alternative of the sets that have no default.
+TRIANGLE = {"positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "faces": [[0, 1, 2]]}
 NEEDED: dict[str, dict[str, Any]] = {
     "conductor": {"eta": 1.0, "k": 1.0},
     "environment": {"pixels": [[0.5]]},
     "ies": {"file": "builtin:wall_washer.ies"},
+    "mesh": TRIANGLE,
 }
 
 
@@ -170,7 +172,7 @@ def test_tables_say_all_that_validation_needs() -> None:
 def test_json_schema_is_plain_and_complete() -> None:
     node = json.loads(json.dumps(json_schema()))
     assert set(node["properties"]) == {
-        "accuray", "length_unit", "include", "render", "film", "camera", "integrator", "spectra", "textures",
+        "accuray", "length_unit", "include", "render", "film", "camera", "integrator", "models", "spectra", "textures",
         "materials", "lights", "shapes",
     }  # fmt: skip
     for section, type_ in all_types():

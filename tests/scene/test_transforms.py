@@ -1,4 +1,4 @@
-"""Transforms: exact angles, order of steps, only rigid motions with uniform scale."""
+"""Transforms: exact angles, order of steps, stretches and shears where shapes stay what they are."""
 
 from __future__ import annotations
 
@@ -52,6 +52,52 @@ def test_one_table_scales_then_rotates_then_translates() -> None:
     assert (parse([{"translate": [1, 0, 0]}, {"scale": 2}]) @ [0, 0, 0, 1]).tolist() == [2, 0, 0, 1]
 
 
+def test_scales_along_the_axes_and_shears() -> None:
+    assert np.diag(parse({"scale": [2, -3, 0.5]})).tolist() == [2, -3, 0.5, 1]
+    slanted = parse([{"scale": [1, 4, 1]}, {"rotate": {"axis": [0, 0, 1], "angle": 90}}, {"scale": [1, 1, 2]}])
+    assert (slanted @ [1, 1, 1, 1]).tolist() == [-4, 1, 2, 1]
+    shear = [1, 0.5, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+    assert (parse({"matrix": shear}) @ [0, 2, 0, 1]).tolist() == [4, 2, 0, 1]
+
+
+def test_steps_of_all_kinds_in_any_order() -> None:
+    steps = [
+        {"translate": [1, 2, 3]},
+        {"scale": [1, 2, 3]},
+        {"look_at": {"origin": [0, 0, 5], "target": [1, 0, 4]}},
+        {"rotate": {"axis": [1, 2, 3], "angle": 40}},
+        {"matrix": [1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
+    ]
+    expected = np.eye(4)
+    for step in steps:
+        expected = parse(step) @ expected
+    assert parse(steps) == pytest.approx(expected, rel=1e-14)
+    assert parse(steps[::-1]) != pytest.approx(expected, rel=1e-3)
+
+
+def test_look_at_turns_as_a_camera() -> None:
+    matrix = parse({"look_at": {"origin": [1, 2, 3], "target": [1, 2, -4]}})
+    assert matrix.tolist() == [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
+    matrix = parse({"look_at": {"origin": [0, 0, "1 m"], "target": [2000, 0, 1000], "up": [0, 0, 3]}}, "mm")
+    assert (matrix @ [0, 0, -1, 1]).tolist() == [1, 0, 1, 1]
+    assert (matrix @ [0, 1, 0, 1]).tolist() == [0, 0, 2, 1]
+    assert (matrix @ [1, 0, 0, 1]).tolist() == [0, -1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        {"look_at": [0, 0, 1]}, {"look_at": {"origin": [0, 0, 0]}}, {"look_at": {"origin": [0] * 3, "target": [0] * 3}},
+        {"look_at": {"origin": [0, 0, 0], "target": [0, 5, 0]}}, {"scale": [1, 2, 0]}, {"scale": [1, 2, 3, 4]},
+        {"look_at": {"origin": [0, 0, 0], "target": [0, 0, 1], "roll": 3}}, {"scale": 2, "look_at": {}},
+        [{"scale": [1, 1, 1e-13]}], {"matrix": [1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
+    ],
+)  # fmt: skip
+def test_steps_that_flatten_or_lead_nowhere(value: Any) -> None:
+    with pytest.raises(SceneError):
+        parse(value)
+
+
 def test_lengths_have_units() -> None:
     assert parse({"translate": [1, "2 m", "3 in"]}, "mm")[:3, 3].tolist() == [0.001, 2, 0.0762]
     rows = [0, -2, 0, 500, 2, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]
@@ -76,11 +122,11 @@ def test_result_is_a_similarity(axis: list[float], angle: float, scale: float) -
 @pytest.mark.parametrize(
     "value",
     [
-        None, 3, "up", [], [3], {"turn": 1}, {"scale": 0}, {"scale": "2 m"}, {"scale": math.nan}, {"scale": [1, 1, 1]},
+        None, 3, "up", [], [3], {"turn": 1}, {"scale": 0}, {"scale": "2 m"}, {"scale": math.nan}, {"scale": [1, 1]},
         {"scale": 1e200, "matrix": [1] * 16}, {"translate": [1, 2]}, {"translate": ["1 kg", 0, 0]}, {"rotate": 30},
         {"rotate": {"axis": [0, 0, 0], "angle": 1}}, {"rotate": {"axis": [0, 0, 1]}}, {"matrix": [1] * 15},
         {"rotate": {"axis": [0, 0, 1], "angle": "1 m"}}, {"matrix": [1] * 16}, {"matrix": [0] * 15 + [1]},
-        {"matrix": [2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}, [{"scale": 1e200}, {"scale": 1e200}],
+        {"scale": [1, 0, 1]}, [{"scale": 1e200}, {"scale": 1e200}],
         {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1]}, {"matrix": "1" * 16}, np.ones((2, 2)),
     ],
 )  # fmt: skip

@@ -18,13 +18,14 @@ struct Mesh {
 
   static constexpr const char* name = "mesh";
   static constexpr const char* doc =
-      "Triangles, from an OBJ or PLY file or from arrays. The front side is where the vertices run counter-clockwise.";
+      "Triangles, from an OBJ, PLY or STL file or from arrays. The front side is where the vertices run "
+      "counter-clockwise.";
   static constexpr auto params() {
     return param_list(
         Param{.name = "file",
               .kind = Kind::file,
-              .doc = "OBJ or PLY file.",
-              .choices = ".obj|.ply",
+              .doc = "OBJ, PLY or STL file.",
+              .choices = ".obj|.ply|.stl",
               .group = "geometry:file"},
         Param{.name = "positions",
               .kind = Kind::array,
@@ -57,7 +58,13 @@ struct Mesh {
             .kind = Kind::choice,
             .doc = "auto: smooth where there are normals; smooth: normals are made where missing; flat: none are used.",
             .preset = "\"auto\"",
-            .choices = "auto|flat|smooth"});
+            .choices = "auto|flat|smooth"},
+        Param{.name = "crease_angle",
+              .kind = Kind::real,
+              .doc = "Where there are no normals, they are made, but not across edges that bend by more than this.",
+              .low = 0,
+              .high = 180,
+              .unit = "deg"});
   }
 };
 
@@ -65,6 +72,7 @@ struct Sphere {
   Vec3 center;
   float radius;
 
+  static constexpr bool rigid = true;  // stays one under rotations, translations and one scale only
   static constexpr const char* name = "sphere";
   static constexpr const char* doc = "A perfect sphere; its front side is the outside.";
   static constexpr auto params() {
@@ -91,6 +99,7 @@ struct Disk {
   Vec3 normal;  // unit
   float radius;
 
+  static constexpr bool rigid = true;
   static constexpr const char* name = "disk";
   static constexpr const char* doc = "A flat disk; its front side is where the normal points.";
   static constexpr auto params() {
@@ -152,6 +161,7 @@ struct Rectangle {
 };
 
 struct Instance {
+  static constexpr bool rigid = true;
   static constexpr const char* name = "instance";
   static constexpr const char* doc = "A copy of prototype shapes under the instance's transform.";
   static constexpr auto params() {
@@ -173,7 +183,7 @@ struct ShapeCommon {
               .role = "material"},
         Param{.name = "transform",
               .kind = Kind::transform,
-              .doc = "Object to world: rigid, with a uniform scale.",
+              .doc = "Object to world. Spheres, disks and instances take one scale only, and no shears.",
               .animatable = true},
         Param{
             .name = "prototype", .kind = Kind::boolean, .doc = "Rendered through instances only.", .preset = "false"});

@@ -1,0 +1,1 @@
+"""Models: files that hold meshes with materials, and may hold cameras and lights; one module or package per format."""
