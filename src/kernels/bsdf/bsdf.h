@@ -14,6 +14,7 @@
 //   - Transmitted radiance is scaled by (eta_o / eta_i)^2, eta_o being the index on the side of wo.
 //   - XAt::is_delta() says that all lobes are, XAt::lobe what the others are. A BSDF whose density depends on which
 //     wavelength is the hero has pdfs(wo, wi) besides: the density by lane, if each were the hero.
+//   - X::transmits is declared if light goes through the surface: only then are lamps behind it asked.
 #pragma once
 
 #include "kernels/geometry/texture_point.h"
