@@ -92,11 +92,11 @@ def test_ratio_is_to_the_best_peer() -> None:
 
 
 def test_any_number_of_lamps_has_the_same_area_and_shines_down() -> None:
-    """The flux of a flat lamp is its area times pi times its radiance, and a camera above sees none of them shine."""
+    """The flux of a flat lamp is its area times pi times its radiance, and it lights the floor."""
     for count in lights.COUNTS[:2]:
         positions, faces = lights.lamps(count)
         assert len(faces) == 2 * count
         a, b, c = (positions[faces[:, k]].astype(np.float64) for k in range(3))
         normal = np.cross(b - a, c - a)
         assert 0.5 * np.linalg.norm(normal, axis=1).sum() == pytest.approx(lights.LAMP_AREA, rel=1e-3)
-        assert (normal[:, 1] < -0.7 * np.linalg.norm(normal, axis=1)).all()
+        assert (normal[:, 1] < -0.6 * np.linalg.norm(normal, axis=1)).all()

@@ -46,6 +46,13 @@ void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<fl
   });
 }
 
+// Whether light is gathered from both sides of the material's surfaces.
+bool transmits(const LoadedScene& scene, uint32_t material) {
+  const SceneView& view = scene.accel.view();
+  if (material >= view.root->materials.count) throw std::invalid_argument("there is no such material");
+  return view.materials[material].transmits != 0;
+}
+
 uint32_t seed_of(uint32_t seed, Vec3 a, Vec3 b) {
   seed = hash(seed, bits_of(a.x), bits_of(a.y), bits_of(a.z));
   return hash(seed, bits_of(b.x), bits_of(b.y), bits_of(b.z));
@@ -373,6 +380,7 @@ void bind_probe(nb::module_& module) {
   nb::module_ probe = module.def_submodule("probe", "Parts of the kernels over arrays, for tests and study.");
   probe.def("bsdf_sample", &bsdf_sample, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "u"_a, "seed"_a = 0);
   probe.def("bsdf_eval", &bsdf_eval, "scene"_a, "material"_a, "wavelengths"_a, "wo"_a, "wi"_a, "seed"_a = 0);
+  probe.def("transmits", &transmits, "scene"_a, "material"_a);
   probe.def("sheen_albedo", &sheen_albedo, "cosine"_a, "roughness"_a);
   probe.def("texture_values", &texture_values, "scene"_a, "texture"_a, "uv"_a, "points"_a, "footprint"_a = 0.0f);
   probe.def("footprints", &footprints, "scene"_a, "width"_a, "height"_a, "pixels"_a);

@@ -48,6 +48,7 @@ struct MaterialRecord {
   Tagged bsdf;
   uint32_t composed;     // `bsdf` is one of Compositions, whose parts are the materials to shade with
   uint32_t interior;     // none: not the surface of a dielectric body
+  uint32_t transmits;    // it gathers light from both sides
   SpectrumRef emission;  // none: does not emit
   uint32_t emits_both_sides;
   uint32_t reads_texture_point;  // it is textured, or its BSDF is oriented

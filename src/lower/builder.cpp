@@ -158,6 +158,9 @@ uint32_t SceneBuilder::add_material(std::string_view type, Values values, const 
     }
   });
   material.oriented = oriented ? 1u : under.oriented;
+  const bool transmits =
+      dispatch(Bsdfs{}, material.bsdf.tag, [](auto listed) { return requires { decltype(listed)::type::transmits; }; });
+  material.transmits = transmits ? 1u : under.transmits;
   const bool reads = material.oriented != 0 || any_textured(values) || any_textured(header);
   material.reads_texture_point = reads ? 1u : under.reads_texture_point;
   materials_.push_back(material);

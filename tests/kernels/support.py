@@ -79,6 +79,13 @@ class Bsdf:
     def __init__(self, core: Any, material: int, wavelengths: Sequence[float] = WAVELENGTHS) -> None:
         self._core, self._material, self._wavelengths = core, material, list(wavelengths)
 
+    @property
+    def transmits(self) -> bool:
+        """Whether lamps on both sides of its surfaces are asked for their light."""
+        from accuray._core import probe
+
+        return bool(probe.transmits(self._core, self._material))
+
     def sample(self, wo: FloatArray, u: FloatArray, seed: int = 0) -> Samples:
         """Samples for `u` (N, 3): two numbers for the direction and one for the lobe. A stochastic type draws more, by
         `seed` and the row's own numbers.

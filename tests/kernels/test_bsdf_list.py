@@ -168,6 +168,15 @@ def test_samples_follow_the_density(name: str, number: int, direction: str, samp
 
 
 @each_type
+def test_what_light_goes_through_is_lit_from_both_sides(name: str) -> None:
+    wo, wi = random_directions(2000, SEED), random_directions(2000, SEED + 1)
+    crosses = (wo[:, 2] > 0) != (wi[:, 2] > 0)
+    for material, bsdf in zip(materials(name), bsdfs(materials(name)), strict=True):
+        through = (bsdf.eval(wo, wi)[0][crosses] > 0).any()
+        assert bsdf.transmits or not through, material
+
+
+@each_type
 def test_weight_is_eval_over_pdf(name: str) -> None:
     """For every sample that is not specular, and the density is the one that pdf() gives for its direction. The values
     of a stochastic type are compared in expectation, below.

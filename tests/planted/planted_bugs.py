@@ -103,6 +103,13 @@ BUGS = (
         "C1.two-points/mis",
     ),
     bug(
+        "light-tree-forgets-a-level",
+        "light/tree.h",
+        "    probability *= shares.probability(k);\n",
+        "",
+        "C1.two-points/mis",
+    ),
+    bug(
         "back-of-lamps-shines",
         "light/select.h",
         "if (faces_away && record.both_sides == 0) s.scale = 0.0f;",

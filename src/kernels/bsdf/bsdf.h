@@ -15,6 +15,7 @@
 //   - XAt::is_delta() says that all lobes are, XAt::lobe what the others are. A BSDF that finds value and density
 //     together has lobes(wo, wi) besides, which gives both; its density is by lane where it depends on which
 //     wavelength is the hero.
+//   - X::transmits is declared if light goes through the surface: only then are lamps behind it asked.
 #pragma once
 
 #include "kernels/bsdf/surface_params.h"

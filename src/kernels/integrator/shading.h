@@ -33,7 +33,7 @@ inline Frame shading_frame(const SceneView& scene, const MaterialRecord& materia
 
 // The side that a surface gathers light from when seen from `cos_viewer`, as its normal; zero: from both.
 inline Vec3 gathering_normal(const MaterialRecord& material, const Frame& frame, float cos_viewer) {
-  if (material.interior != none) return {0.0f, 0.0f, 0.0f};
+  if (material.transmits != 0) return {0.0f, 0.0f, 0.0f};
   return cos_viewer < 0.0f ? -frame.z : frame.z;
 }
 
