@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes scenes/models/chess.glb: a corner of a chess board with pawns, to show what a glTF file may hold.
+"""Writes scenes/models/chess.glb: a corner of a garden chess with pawns, to show what a glTF file may hold.
 
 Two meshes for the pawns share their vertices and differ in their material: glass, and red lacquer under a clear coat.
 The board has a texture, a camera stands before it, and the pawns of a kind are instances of one.
@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 
 SEGMENTS = 40
 SQUARES = 4
-# Radius and height of a pawn's outline, from the foot to the top, centimetres.
+WIDTH = 0.4  # of a square, metres
+# Radius and height of a pawn's outline, from the foot to the top, decimetres.
 OUTLINE = (
     (0.0, 0.0), (1.45, 0.0), (1.5, 0.12), (1.5, 0.45), (1.38, 0.62), (1.2, 0.72), (1.22, 0.9), (1.1, 1.05),
     (0.82, 1.35), (0.64, 1.75), (0.54, 2.2), (0.5, 2.55), (0.82, 2.66), (0.88, 2.76), (0.82, 2.86), (0.55, 2.95),
@@ -66,7 +67,7 @@ class Buffer:
 
 def pawn() -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint16]]:
     """Positions in metres, normals and triangles of a pawn: its outline turned about the y axis."""
-    outline = np.array(OUTLINE) * 0.01
+    outline = np.array(OUTLINE) * 0.1
     along = np.gradient(outline, axis=0)
     across = np.stack([along[:, 1], -along[:, 0]], axis=1)
     across[0], across[-1] = (0, -1), (0, 1)
@@ -103,7 +104,7 @@ def document() -> tuple[dict[str, Any], bytes]:
     positions, normals, triangles = pawn()
     attributes = {"POSITION": buffer.accessor(positions), "NORMAL": buffer.accessor(normals)}
     indices = buffer.accessor(triangles)
-    side = 0.04 * SQUARES / 2
+    side = WIDTH * SQUARES / 2
     corners = np.array([[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]]) * side
     plane = {
         "POSITION": buffer.accessor(corners.astype("<f4")),
@@ -114,10 +115,10 @@ def document() -> tuple[dict[str, Any], bytes]:
     nodes: list[dict[str, Any]] = [{"name": "board", "mesh": 0}]
     for mesh, places in enumerate(PAWNS.values(), start=1):
         nodes += [
-            {"name": "pawn", "mesh": mesh, "translation": [0.04 * (x + 0.5), 0, 0.04 * (z - 0.5)]} for x, z in places
+            {"name": "pawn", "mesh": mesh, "translation": [WIDTH * (x + 0.5), 0, WIDTH * (z - 0.5)]} for x, z in places
         ]
     tilt = math.radians(-24) / 2
-    seat = {"translation": [0.012, 0.118, 0.23], "rotation": [math.sin(tilt), 0, 0, math.cos(tilt)]}
+    seat = {"translation": [0.12, 1.18, 2.3], "rotation": [math.sin(tilt), 0, 0, math.cos(tilt)]}
     data = {
         "asset": {"version": "2.0", "generator": "tools/make_chess_model.py"},
         "extensionsUsed": [
@@ -157,8 +158,8 @@ def materials(board: dict[str, Any]) -> list[dict[str, Any]]:
                 "KHR_materials_transmission": {"transmissionFactor": 1},
                 "KHR_materials_ior": {"ior": 1.5},
                 "KHR_materials_volume": {
-                    "thicknessFactor": 0.02,
-                    "attenuationDistance": 0.03,
+                    "thicknessFactor": 0.2,
+                    "attenuationDistance": 0.3,
                     "attenuationColor": [0.55, 0.85, 0.75],
                 },
             },

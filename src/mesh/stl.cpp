@@ -119,31 +119,37 @@ class StlReader {
     if (state_ != State::outside) fail_here("the file", "", "ends inside of a solid", "endsolid");
   }
 
-  // What may come next: `solid`; `facet` or `endsolid`; `outer loop`; `vertex`; `endloop`; `endfacet`.
   enum class State { outside, solid, facet, loop, full, closed };
 
+  // What each state takes, and where it leads to; a loop takes vertices until it is full.
+  struct Step {
+    State from;
+    std::string_view keyword;
+    State to;
+  };
+  static constexpr std::array<Step, 6> kSteps = {
+      {{State::outside, "solid", State::solid},
+       {State::solid, "endsolid", State::outside},
+       {State::solid, "facet", State::facet},  // normals follow from vertices
+       {State::facet, "outer", State::loop},
+       {State::full, "endloop", State::closed},
+       {State::closed, "endfacet", State::solid}}};
+  static constexpr std::array<std::string_view, 6> kExpected = {
+      "solid", "facet normal x y z, or endsolid", "outer loop", "vertex x y z, three times", "endloop", "endfacet"};
+
   void read_line(std::string_view keyword, Words& words) {
-    if (keyword == "solid" && state_ == State::outside) {
-      state_ = State::solid;
-    } else if (keyword == "endsolid" && state_ == State::solid) {
-      state_ = State::outside;
-    } else if (keyword == "facet" && state_ == State::solid) {
-      state_ = State::facet;  // its normal follows from the vertices
-    } else if (keyword == "outer" && state_ == State::facet && words.word() == "loop") {
-      state_ = State::loop;
-      corners_ = 0;
-    } else if (keyword == "vertex" && state_ == State::loop) {
+    if (keyword == "vertex" && state_ == State::loop) {
       read_vertex(words);
       if (++corners_ == 3) state_ = State::full;
-    } else if (keyword == "endloop" && state_ == State::full) {
-      state_ = State::closed;
-    } else if (keyword == "endfacet" && state_ == State::closed) {
-      state_ = State::solid;
-    } else {
-      static constexpr std::array<std::string_view, 6> kExpected = {
-          "solid", "facet normal x y z, or endsolid", "outer loop", "vertex x y z, three times", "endloop", "endfacet"};
-      fail_here("the word", keyword, "is out of place", kExpected[static_cast<size_t>(state_)]);
+      return;
     }
+    for (const Step& step : kSteps) {
+      if (step.from != state_ || step.keyword != keyword) continue;
+      state_ = step.to;
+      corners_ = 0;
+      return;
+    }
+    fail_here("the word", keyword, "is out of place", kExpected[static_cast<size_t>(state_)]);
   }
 
   void read_vertex(Words& words) {

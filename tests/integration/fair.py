@@ -130,7 +130,7 @@ FAIR = {
     "area-and-point-light": Fair(
         "the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3)
     ),
-    "chess": Fair("the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3)),
+    "chess": Fair("the sky 20 times as bright", partial(brightened, light="sky", factor=20)),
     "closed-box": Fair("as it is: it glows everywhere"),
     "coated": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "cornell-box": Fair("the lamp 4 times as wide and long, 1/16 as bright", partial(enlarged, lamp="lamp", factor=4)),

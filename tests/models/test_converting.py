@@ -166,6 +166,29 @@ def test_errors_in_tables_of_models(table: str, message: str) -> None:
     assert str(caught.value).startswith("a.toml:")
 
 
+def test_stl_as_a_mesh_of_a_scene() -> None:
+    write_stl()
+    shapes = {"a": {"type": "mesh", "file": "a.stl", "material": "m", "crease_angle": 20}}
+    scene = accuray.Scene.from_dict({"materials": {"m": {"type": "diffuse"}}, "shapes": shapes})
+    mesh = accuray.triangles(scene, "a")
+    assert np.array_equal(mesh.positions, SQUARE[:3])
+    assert mesh.normals is not None
+    assert mesh.normals.tolist() == [[0, 0, 1]] * 3
+
+
+@pytest.mark.parametrize("kind", ["sphere", "disk", "instance"])
+def test_what_cannot_be_stretched_is_an_error(kind: str) -> None:
+    table = {"type": kind, "material": "m", "transform": [{"scale": [1, 2, 1]}]}
+    if kind == "instance":
+        table["of"] = "p"
+    prototype = {"type": "cube", "material": "m", "prototype": True}
+    description = {"materials": {"m": {"type": "diffuse"}}, "shapes": {"x": table, "p": prototype}}
+    with pytest.raises(
+        accuray.SceneError, match=rf"shapes\.x\.transform: shears or stretches a shape of the type {kind}"
+    ):
+        accuray.Scene.from_dict(description)
+
+
 def test_stl_that_claims_billions_of_triangles() -> None:
     Path("a.stl").write_bytes(bytes(80) + b"\xff\xff\xff\xff" + bytes(116))
     start = time.process_time()

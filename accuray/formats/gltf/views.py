@@ -14,6 +14,9 @@ from accuray.formats.models.model import Model, Table
 LIGHTS = {"point": "point", "spot": "spot", "directional": "directional"}
 """KHR_lights_punctual's types, and ours."""
 
+NARROWEST = 0.01
+"""Least half-angle of a spot, degrees."""
+
 
 def camera_table(camera: Item, matrix: NDArray[np.float64], model: Model) -> Table:
     """A camera of the scene; ``aspect``, width over height, is for the film."""
@@ -57,7 +60,8 @@ def light_table(light: Item, matrix: NDArray[np.float64], white: float) -> Table
         "direction": direction,
         "intensity": emission,
         "inner_angle": math.degrees(min(inner, outer)),
-        "outer_angle": math.degrees(outer),
+        "outer_angle": max(math.degrees(outer), NARROWEST),
+        "falloff": "square",
     }
 
 

@@ -99,4 +99,4 @@ def _file_names(line: str, folder: Path) -> list[str]:
     """The files that a line names: one with blanks in its name if there is such a file, else one for each word."""
     line = line.replace("\\", "/")
     safe = 0 < len(line) < 256 and "\0" not in line
-    return [line] if safe and (folder / line).exists() else line.split()
+    return [line] if safe and (folder / line).exists() else line.split(maxsplit=MOST_LIBRARIES)[:MOST_LIBRARIES]
