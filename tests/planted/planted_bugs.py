@@ -75,7 +75,7 @@ BUGS = (
     ),
     bug(
         "mis-weights-do-not-sum-to-one",
-        "integrator/steps.h",
+        "integrator/weights.h",
         "a / (a + other * other)",
         "a / (a + 2.0f * other * other)",
         "C1.disk-on-axis/mis",

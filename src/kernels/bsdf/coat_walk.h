@@ -39,15 +39,15 @@ struct CoatLayer {
   // What is before it is the layer. On GPUs the layer lies in a thread's own memory, of which there is little.
   [[no_unique_address]] BaseAt base;
   bool clear;
-  bool hero_only;
   bool twice;        // the base is the surface of a second layer, upon a matte surface (recoated.h)
   bool lower_clear;  // as `clear`, of the second layer
+  uint8_t lobe;
   uint32_t seed;
-  uint32_t lobe;
   float matte_roughness;
   Spectrum matte_reflectance;
   Spectrum lower_share;
 
+  bool hero_only() const { return top.rough.hero_only; }
   bool is_delta(bool at_top) const { return at_top ? top.is_delta() : base.is_delta(); }
 
   // Calls fn with the values of the interface. The upper one is a dielectric like one of the bases.
@@ -117,7 +117,7 @@ inline bool goes_on(Spectrum& weight, float eta_scale, uint32_t event, CoatNumbe
 inline BsdfSample coat_entry(const CoatLayer& layer, bool at_top, Vec3 w, Vec3 u) {
   float share = 1.0f;
   if (at_top && layer.top.is_delta()) {
-    share = 1.0f - chance_for_all(layer.top.rough.reflectance(abs(w.z), true), layer.hero_only);
+    share = 1.0f - chance_for_all(layer.top.rough.reflectance(abs(w.z), true), layer.hero_only());
     u.z = one_minus_epsilon;
   }
   BsdfSample s = coat_event(layer, at_top, w, u);
@@ -175,7 +175,7 @@ ACCURAY_NOINLINE inline Spectrum coat_eval(const CoatLayer& layer, Vec3 wo, Vec3
   Spectrum weight = lanes(1.0f);
   float eta_scale = 1.0f;
   float pdf = 0.0f;  // with which the walk chose w; 0 if it had no choice
-  bool hero = layer.hero_only;
+  bool hero = layer.hero_only();
   Vec3 w = wo;
   bool at_top = wo.z > 0.0f;
   for (uint32_t event = 0;; ++event) {

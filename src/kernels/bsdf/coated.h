@@ -107,7 +107,6 @@ struct Coated {
     at.top = interface.at(p, index / p.exterior);
     at.share = share;
     at.clear = LayerShare::is_clear(share);
-    at.hero_only = p.wl.hero_only;
     at.seed = p.seed;
     at.twice = base.tag == tag;
     // The layer lies before the base, but not before the back of an opaque one.

@@ -13,7 +13,8 @@
 namespace accuray {
 
 struct ConductorAt {
-  MetalAt metal;
+  // Its last bytes are shared: on GPUs there is little room for what lies under a coat.
+  [[no_unique_address]] MetalAt metal;
   Ggx facets;
   MetalLoss loss;
 

@@ -9,17 +9,17 @@ namespace accuray {
 
 struct MetalAt {
   Spectrum a, b;  // real and imaginary part of the index; or reflectance along the normal and depth of the dip
-  bool tinted;
   FilmAt film = {};
+  bool tinted = false;
 
-  static MetalAt of_index(Spectrum eta, Spectrum k, FilmAt film = {}) { return {eta, k, false, film}; }
+  static MetalAt of_index(Spectrum eta, Spectrum k, FilmAt film = {}) { return {eta, k, film}; }
   // Schlick's curve with a dip that gives reflectance times tint at 82 degrees, where the curves of metals are lowest
   // (Kutz, Hasan and Edmondson 2021).
   static MetalAt of_colours(Spectrum reflectance, Spectrum tint) {
     constexpr float c = 1.0f / 7.0f;
     constexpr float rest = (1.0f - c) * (1.0f - c) * (1.0f - c) * (1.0f - c) * (1.0f - c);
     const Spectrum at_82 = reflectance + (1.0f - reflectance) * rest;
-    return {reflectance, at_82 * (1.0f - tint) * (1.0f / (c * rest * (1.0f - c))), true};
+    return {reflectance, at_82 * (1.0f - tint) * (1.0f / (c * rest * (1.0f - c))), {}, true};
   }
 
   // A film needs an index: the one that gives this reflectance along the normal, and towards the edge the curve of the
