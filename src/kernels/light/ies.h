@@ -123,7 +123,7 @@ struct IesLight {
   }
   float pdf(Vec3, Vec3, const Surface&) const { return 0.0f; }
   float power_per_radiance(float) const { return lumens; }
-  LightBounds bounds() const { return {position, position, axis, 1.0f, cos_emission}; }
+  LightBounds bounds() const { return {position, position, axis, 1.0f, max(cos_emission - cone_slack, -1.0f)}; }
 };
 
 }  // namespace accuray
