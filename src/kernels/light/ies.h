@@ -112,7 +112,7 @@ struct IesLight {
     if (horizontals == 1) return mixed(candela(), v);
     const float phi = atan2(d.y, d.x);
     const Between h = between(horizontal(), horizontals, phi < 0.0f ? phi + 2.0f * pi : phi);
-    const float* values = candela() + h.index * verticals;
+    const float* values = candela() + size_t{h.index} * verticals;
     return fma(h.along, mixed(values + verticals, v) - mixed(values, v), mixed(values, v));
   }
 
