@@ -63,9 +63,12 @@ def _read(path: Path, where: Where) -> Photometry:
         known = ", ".join(_readers) or "none (import accuray.formats)"
         raise where.error("has no reader", value=path.name, allowed=known)
     try:
-        return reader(path)
+        found = reader(path)
     except (ValueError, OSError) as error:
         raise where.error(f"cannot be read: {error}", value=path.name) from error
+    for array in (found.vertical, found.horizontal, found.candela):
+        array.flags.writeable = False
+    return found
 
 
 def _check(light: dict[str, Any], where: Where) -> None:

@@ -269,6 +269,15 @@ nb::tuple tessellated(const std::string& type, const nb::dict& values, const std
                         to_numpy(std::move(mesh.uvs), 2));
 }
 
+void bind_lamps(nb::module_& lower) {
+  lower.def(
+      "lamp_power",
+      [](const std::string& type, const nb::dict& values, const std::optional<PhotometryArrays>& photometry) {
+        return lamp_power(type, to_values(values), to_photometry(photometry));
+      },
+      "type"_a, "values"_a, "photometry"_a.none(), "Flux of a named light that is not infinite per unit of emission.");
+}
+
 }  // namespace
 
 void bind_lower(nb::module_& module) {
@@ -306,13 +315,7 @@ void bind_lower(nb::module_& module) {
   bind_textures(builder);
   bind_parts(builder);
 
-  lower.def(
-      "lamp_power",
-      [](const std::string& type, const nb::dict& values, const std::optional<PhotometryArrays>& photometry) {
-        return lamp_power(type, to_values(values), to_photometry(photometry));
-      },
-      "type"_a, "values"_a, "photometry"_a.none(), "Flux of a named light that is not infinite per unit of emission.");
-
+  bind_lamps(lower);
   lower.attr("SOLIDS") = names_of(Solids{});
   lower.def("tessellate", &tessellated, "type"_a, "values"_a, "newell"_a.none(),
             "A shape of SOLIDS as (positions, indices, normals or None, uvs); a teapot from (512, 3) control points.");

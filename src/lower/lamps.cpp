@@ -44,6 +44,7 @@ double solid_angle(SpotFalloff falloff, double a, double b) {
 
 std::vector<float> radians(const std::vector<double>& degrees) {
   std::vector<float> result;
+  result.reserve(degrees.size());
   for (const double angle : degrees) result.push_back(static_cast<float>(angle * kRadians));
   return result;
 }

@@ -371,6 +371,22 @@ SPECTRA = [
         "does not fit",
         "W/(sr nm)",
     ),
+    scene(
+        "flux-of-sky",
+        '[lights.l]\ntype = "constant"\nradiance = "800 lm"\n',
+        "scene.toml:4: lights.l.radiance",
+        '"800 lm" has the wrong unit',
+        "cd/m^2",
+    ),
+    scene(
+        "ies-broken",
+        '[lights.l]\ntype = "ies"\nfile = "x.ies"\n',
+        "scene.toml:4: lights.l.file",
+        "line 2: 'many' is no finite number, in place of the number of lamps",
+        files={"x.ies": "TILT=NONE\nmany"},
+    ),
+    scene("ies-other", '[lights.l]\ntype = "ies"\nfile = "x.csv"\n', "lights.l.file", ".ies", files={"x.csv": ""}),
+    scene("ies-outside", '[lights.l]\ntype = "ies"\nfile = "../x.ies"\n', "lights.l.file", "leads outside"),
     scene("metal", '[materials.m]\ntype = "conductor"\nmetal = "Gold"\n', "materials.m.metal", '"Gold"', "Au, "),
     scene(
         "metal-none",

@@ -112,7 +112,7 @@ struct IesLight {
     if (horizontals == 1) return mixed(candela(), v);
     const float phi = atan2(d.y, d.x);
     const Between h = between(horizontal(), horizontals, phi < 0.0f ? phi + 2.0f * pi : phi);
-    const float* values = candela() + h.index * verticals;
+    const float* values = candela() + size_t{h.index} * verticals;
     return fma(h.along, mixed(values + verticals, v) - mixed(values, v), mixed(values, v));
   }
 
@@ -123,7 +123,7 @@ struct IesLight {
   }
   float pdf(Vec3, Vec3, const Surface&) const { return 0.0f; }
   float power_per_radiance(float) const { return lumens; }
-  LightBounds bounds() const { return {position, position, axis, 1.0f, cos_emission}; }
+  LightBounds bounds() const { return {position, position, axis, 1.0f, max(cos_emission - cone_slack, -1.0f)}; }
 };
 
 }  // namespace accuray

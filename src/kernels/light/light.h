@@ -40,6 +40,9 @@ struct LightBounds {
   float cos_emission;
 };
 
+// How far lights at a point lower the cosine that bounds them, so that rounding darkens no direction.
+constexpr float cone_slack = 1e-6f;
+
 inline LightSample no_light() { return {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0.0f, 0.0f, 0.0f}; }
 
 // A flat light is sampled by solid angle from near by, where the density of its points varies without bound, and by

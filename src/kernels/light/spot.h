@@ -94,7 +94,7 @@ struct SpotLight {
   }
   float pdf(Vec3, Vec3, const Surface&) const { return 0.0f; }
   float power_per_radiance(float) const { return solid_angle; }
-  LightBounds bounds() const { return {position, position, axis, 1.0f, max(1.0f - versine_outer, -1.0f)}; }
+  LightBounds bounds() const { return {position, position, axis, 1.0f, max(1.0f - versine_outer - cone_slack, -1.0f)}; }
 };
 
 }  // namespace accuray
