@@ -27,8 +27,8 @@ def _check_radiance(pixels: Any, where: Where) -> None:
     import numpy as np
 
     colours = pixels[..., : 3 if pixels.shape[2] >= 3 else 1]
-    if colours.min() < 0 or colours.max() > MOST:
-        row, column, channel = (int(index) for index in np.argwhere((colours < 0) | (colours > MOST))[0])
+    if float(colours.min()) < 0.0 or float(colours.max()) > MOST:
+        row, column, channel = (int(index) for index in np.argwhere((colours < 0) | (colours > np.float32(MOST)))[0])
         raise where.error(
             f"has a texel of the radiance {float(colours[row, column, channel]):g}: row {row}, column {column}, "
             f"channel {channel}",

@@ -28,6 +28,7 @@ BAD = [
     ({"pixels": with_texel(np.nan)}, "lights.l.pixels", "row 1, column 2, channel 2"),
     ({"pixels": with_texel(np.inf)}, "lights.l.pixels", "not a finite number"),
     ({"pixels": with_texel(-0.25)}, "lights.l.pixels", "radiance -0.25: row 1, column 2, channel 2"),
+    ({"pixels": with_texel(-0.25).astype(np.float16)}, "lights.l.pixels", "radiance -0.25"),
     ({"pixels": with_texel(2e30)}, "lights.l.pixels", "0 to 1e+30"),
     ({"pixels": GREY, "color_space": "data"}, "lights.l.color_space", '"auto", "srgb", "linear"'),
     ({"pixels": GREY, "scale": -1}, "lights.l.scale", "at least 0"),
