@@ -6,6 +6,9 @@ from typing import Any
 
 from accuray.scene.errors import Where
 
+MOST = 1e30
+"""Largest texel: sums over a map stay finite."""
+
 
 def check_environments(lights: dict[str, dict[str, Any]], where: Where) -> None:
     """Puts what ``color_space = "auto"`` means in its place; radiance is never negative. Raises SceneError."""
@@ -24,10 +27,10 @@ def _check_radiance(pixels: Any, where: Where) -> None:
     import numpy as np
 
     colours = pixels[..., : 3 if pixels.shape[2] >= 3 else 1]
-    if colours.min() < 0:
-        row, column, channel = (int(index) for index in np.argwhere(colours < 0)[0])
+    if float(colours.min()) < 0.0 or float(colours.max()) > MOST:
+        row, column, channel = (int(index) for index in np.argwhere((colours < 0) | (colours > np.float32(MOST)))[0])
         raise where.error(
-            f"has a texel of negative radiance: {float(colours[row, column, channel]):g} at row {row}, "
-            f"column {column}, channel {channel}",
-            allowed="numbers of at least 0",
+            f"has a texel of the radiance {float(colours[row, column, channel]):g}: row {row}, column {column}, "
+            f"channel {channel}",
+            allowed=f"0 to {MOST:g}",
         )

@@ -169,7 +169,7 @@ BUGS = (
     bug(
         "light-met-counts-twice",
         "integrator/steps.h",
-        "return mis_weight(path.bsdf_pdf, pdf);",
+        "return mis_weight(from.pdf, pdf);",
         "return pdf < 0.0f ? 0.0f : 1.0f;",
         "C1.disk-on-axis/mis",
     ),
@@ -186,6 +186,20 @@ BUGS = (
         "uniform_sphere_pdf = 0.25f * inv_pi",
         "uniform_sphere_pdf = 0.5f * inv_pi",
         "C1.environment/light",
+    ),
+    bug(
+        "map-density-without-the-sine",
+        "light/directions.h",
+        "/ (2.0f * pi * pi * around)",
+        "/ (2.0f * pi * pi)",
+        "C9.texel/light",
+    ),
+    bug(
+        "limb-of-the-sun-as-bright-as-its-middle",
+        "light/sun.h",
+        "1.0f - chord * (1.0f - 0.25f * chord) / sine_squared()",
+        "1.0f - 0.0f * chord",
+        "C9.ground-560nm-sun/mis",
     ),
     bug(
         "one-bounce-too-many",

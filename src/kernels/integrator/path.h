@@ -5,7 +5,7 @@
 // chosen by the BSDF, and both are weighted so that their sum stays the light itself.
 #pragma once
 
-#include "kernels/integrator/steps.h"
+#include "kernels/integrator/miss.h"
 #include "kernels/schema.h"
 
 namespace accuray {
@@ -75,7 +75,7 @@ struct PathTracing {
     if (surface.light != none) {
       const Spectrum emission = emitted(scene, path.hit, surface, toward_viewer, path.wl);
       if (!is_black(emission)) {
-        const float weight = hit_weight(scene, strategy, path, surface.light, surface);
+        const float weight = hit_weight(scene, strategy, departure(path), path.ray.direction, surface.light, surface);
         path.radiance = fma(path.throughput * weight, emission, path.radiance);
       }
     }

@@ -3,7 +3,7 @@
 // that no path can meet (points) are summed plainly, each of them at each vertex. Never optimise this file.
 #pragma once
 
-#include "kernels/integrator/steps.h"
+#include "kernels/integrator/miss.h"
 #include "kernels/schema.h"
 
 namespace accuray {

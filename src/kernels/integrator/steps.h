@@ -50,31 +50,21 @@ inline Spectrum sampled_emission(const SceneView& scene, uint32_t light, Vec3 po
   return evaluate(emission, scene.tables, wl);
 }
 
-// Weight of light that the path met by itself, given that sample_light might have found it too.
-inline float hit_weight(const SceneView& scene, Strategy strategy, const Path& path, uint32_t light,
-                        const Surface& at) {
-  if (path.bsdf_pdf == 0.0f || strategy == Strategy::bsdf) return 1.0f;
-  if (strategy == Strategy::light) return 0.0f;
-  const float chosen = choice_probability(scene, path.origin, path.origin_normal, path.ray.time, light);
-  const float pdf = chosen * light_pdf(scene, light, path.origin, path.ray.direction, at);
-  return mis_weight(path.bsdf_pdf, pdf);
-}
+// Where the path's ray comes from, and its density there; 0 if no other technique could have chosen it.
+struct Departure {
+  Vec3 point, normal;
+  float time, pdf;
+};
+inline Departure departure(const Path& path) { return {path.origin, path.origin_normal, path.ray.time, path.bsdf_pdf}; }
 
-// Step shade_miss: the ray left the scene, and meets the infinite lights in its direction.
-inline void shade_miss(const SceneView& scene, Strategy strategy, Path& path) {
-  path.alive = false;
-  const bool seen_by_camera = path.depth == 0;
-  bool covered = !seen_by_camera;
-  for (uint32_t i = 0; i < scene.root->infinite_lights.count; ++i) {
-    const InfiniteRecord& infinite = scene.infinite_lights[i];
-    if (seen_by_camera && infinite.hidden != 0) continue;
-    const Spectrum radiance = radiance_met(scene, infinite, path.ray.direction, path.wl);
-    if (infinite.partial != 0 && is_black(radiance)) continue;
-    covered = true;
-    const float weight = hit_weight(scene, strategy, path, infinite.light, Surface{});
-    path.radiance = fma(path.throughput * weight, radiance, path.radiance);
-  }
-  if (!covered) path.alpha = 0.0f;
+// Weight of light that the path met by itself, given that sample_light might have found it too.
+inline float hit_weight(const SceneView& scene, Strategy strategy, const Departure& from, Vec3 wi, uint32_t light,
+                        const Surface& at) {
+  if (from.pdf == 0.0f || strategy == Strategy::bsdf) return 1.0f;
+  if (strategy == Strategy::light) return 0.0f;
+  const float chosen = choice_probability(scene, from.point, from.normal, from.time, light);
+  const float pdf = chosen * light_pdf(scene, light, from.point, wi, at);
+  return mis_weight(from.pdf, pdf);
 }
 
 // Part of a light sample that arrives: everything but the light's own emission.

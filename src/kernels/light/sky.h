@@ -54,6 +54,8 @@ struct SkyLight {
                                    .kind = Kind::spectrum,
                                    .doc = "Reflectance of the land all around, which lights the sky from below.",
                                    .preset = "0.2",
+                                   .low = 0,
+                                   .high = 1,
                                    .role = "reflectance",
                                    .animatable = true},
                              Param{.name = "sun",
