@@ -127,8 +127,8 @@ struct Root {
   Slice<LightRecord> lights;
   Slice<LightPlace> light_places;  // of every light; empty if no emission is textured
   Slice<InfiniteRecord> infinite_lights;
-  Slice<LightNode> light_nodes;    // the root first; empty if no light is near
-  Slice<uint32_t> light_trails;    // of every light its way from the root; none: emits nothing
+  Slice<LightNode> light_nodes;  // the root first; empty if no light is near
+  Slice<uint32_t> light_trails;  // of every light its way from the root; none: emits nothing
   Slice<DistantLight> distant_lights;
   Slice<uint32_t> light_of_primitive;
   Slice<uint32_t> lights_of_instance;

@@ -17,8 +17,8 @@
 
 namespace accuray {
 
-using NamedLights = TypeList<PointLight, ConstantLight, SpotLight, DirectionalLight, IesLight, EnvironmentLight,
-                             SunLight, SkyLight>;
+using NamedLights =
+    TypeList<PointLight, ConstantLight, SpotLight, DirectionalLight, IesLight, EnvironmentLight, SunLight, SkyLight>;
 using Lights = TypeList<PointLight, ConstantLight, TriangleLight, QuadLight, SphereLight, DiskLight, SpotLight,
                         DirectionalLight, IesLight, EnvironmentLight, SunLight, SkyLight>;
 
