@@ -83,7 +83,16 @@ def test_transmission_without_a_volume_is_a_thin_wall() -> None:
     extensions = {"KHR_materials_transmission": {"transmissionFactor": 1}}
     m, scene = loaded({"pbrMetallicRoughness": {**PLAIN, "baseColorFactor": [1, 0, 0, 1]}, "extensions": extensions})
     assert m["geometry_thin_walled"]
-    assert any("not blurred" in note for note in scene.model_notes)
+    assert rgb(m["transmission_color"]) == (1, 0, 0)
+    assert not scene.model_notes
+
+
+def test_the_base_colour_tints_beside_an_attenuation_no_more() -> None:
+    extensions = {
+        "KHR_materials_transmission": {"transmissionFactor": 1},
+        "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2},
+    }
+    _, scene = loaded({"pbrMetallicRoughness": {**PLAIN, "baseColorFactor": [1, 0, 0, 1]}, "extensions": extensions})
     assert any("attenuationColor does" in note for note in scene.model_notes)
 
 

@@ -138,14 +138,16 @@ class Materials:
         volume = b.item.extension("KHR_materials_volume")
         if volume is None or volume.number("thicknessFactor", 0.0, 0.0) == 0.0:
             b.table["geometry_thin_walled"] = True
-            if b.table["specular_roughness"] != 0.0:
-                self._model.note(b.place, "what a thin wall transmits is not blurred by its roughness")
         elif volume.has("attenuationDistance"):
             color = tuple(self._share(b, value) for value in volume.vector("attenuationColor", (1.0, 1.0, 1.0)))
             b.table["transmission_color"] = list(color)
             b.table["transmission_depth"] = volume.number("attenuationDistance", low=1e-12)
-        if b.table["base_color"] != [1.0, 1.0, 1.0]:
-            self._model.note(b.place, "the base colour does not tint what is transmitted; attenuationColor does")
+        plain = isinstance(b.table["base_color"], list)
+        if plain and "transmission_depth" not in b.table:
+            b.table["transmission_color"] = b.table["base_color"]
+        elif b.table["base_color"] != [1.0, 1.0, 1.0]:
+            what = "attenuationColor does" if plain else "a picture cannot"
+            self._model.note(b.place, f"the base colour does not tint what is transmitted; {what}")
         dispersion = b.item.extension("KHR_materials_dispersion")
         amount = 0.0 if dispersion is None else dispersion.number("dispersion", 0.0, 0.0)
         if amount > 0.0 and not b.table.get("geometry_thin_walled"):
@@ -180,9 +182,6 @@ class Materials:
     def _film(self, b: _Building) -> None:
         film = b.item.extension("KHR_materials_iridescence")
         if film is None or film.number("iridescenceFactor", 0.0) == 0.0:
-            return
-        if b.table["base_metalness"] != 0.0:
-            self._model.note(b.place, "iridescence was left out: metals that are given by a colour take no film")
             return
         weight = self._number(b, film, "iridescenceFactor", 0.0)
         b.table["thin_film_weight"] = self._scaled(b, film, "iridescenceTexture", "red", weight)

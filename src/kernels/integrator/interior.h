@@ -14,7 +14,7 @@ constexpr uint32_t most_interiors = 8;
 
 // Indices into SceneView::interiors in the order of entering. Deeper nesting forgets the outermost.
 struct Interiors {
-  uint32_t count = 0;
+  uint16_t count = 0;
   uint16_t entered[most_interiors] = {};
 
   void remove_at(uint32_t position) {

@@ -36,7 +36,7 @@ inline void shade_miss(const SceneView& scene, Strategy strategy, Path& path) {
     path.radiance = fma(path.throughput, met.radiance, path.radiance);
     if (met.covered) return;
   }
-  if (seen_by_camera) path.alpha = 0.0f;
+  if (seen_by_camera) path.seen = false;
 }
 
 }  // namespace accuray

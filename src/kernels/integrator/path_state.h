@@ -20,11 +20,11 @@ struct Path {
   Vec3 origin_normal;  // of the side that gathers light there; zero: both, or the camera
   float bsdf_pdf;      // density of the ray's direction; 0 after a delta lobe or at the camera
   float eta_scale;     // (eta now / eta at the camera)^2: radiance scaling, kept out of the roulette
-  float alpha;         // 1 where the camera saw something
   uint32_t depth;      // scattering events so far
   uint32_t spent;      // of the weighted depth budget
   Interiors inside;    // the bodies that the ray is in
   bool alive;
+  bool seen;  // by the camera: something, so that the sample counts as covered
   Cone cone;  // around the ray, from `origin`; only for scenes with mipmaps
 };
 
@@ -34,9 +34,11 @@ constexpr uint32_t lens_set = 1;
 inline uint32_t direction_set(const Path& path) { return 2u + 2u * path.depth; }
 inline uint32_t decision_set(const Path& path) { return 3u + 2u * path.depth; }
 
+inline float alpha_of(const Path& path) { return path.seen ? 1.0f : 0.0f; }
+
 inline Path start_path(const Ray& ray, const Wavelengths& wl, const Sampler& sampler) {
-  return {ray,  Hit{}, wl,   lanes(1.0f), lanes(0.0f), sampler, ray.origin, {0, 0, 0},
-          0.0f, 1.0f,  1.0f, 0,           0,           {},      true,       {}};
+  return {ray,  Hit{}, wl, lanes(1.0f), lanes(0.0f), sampler, ray.origin, {0, 0, 0},
+          0.0f, 1.0f,  0,  0,           {},          true,    true,       {}};
 }
 
 // What a scattered direction stands for: a cone of a sixteenth of its lobe's solid angle, taken as 1/pdf. A lobe thus

@@ -63,7 +63,7 @@ inline Path generate(const SceneView& scene, const Request& request, uint32_t x,
     path.cone = pixel_cone(scene, request, film, sampler, seen.ray);
   if (!seen.seen) {
     path.alive = false;
-    path.alpha = 0.0f;
+    path.seen = false;
   }
   return path;
 }
@@ -95,7 +95,7 @@ inline Quantized sample_pixel(const SceneView& scene, const A& accel, const Requ
   const f32x4 u = sampler.draw(camera_set);
   Path path = generate(scene, request, x, y, sampler, sample_wavelengths(scene, request.observer, u[2]), u);
   trace<Among>(scene, accel, path);
-  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
+  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, alpha_of(path), u[2]);
   return quantize(channels, inverse_step, dither_key(key, index));
 }
 
@@ -117,7 +117,7 @@ inline LayeredSample sample_pixel_layers(const SceneView& scene, const A& accel,
   Path direct = path;
   trace<Integrators>(scene, accel, path);
   trace_direct(scene, accel, direct);
-  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
+  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, alpha_of(path), u[2]);
   const f32x4 indirect = respond(scene, request.observer, path.wl, path.radiance - direct.radiance, 0.0f, u[2]);
   const uint32_t dither = dither_key(key, index);
   return {quantize(channels, inverse_step, dither), quantize(indirect, inverse_step, hash(dither, 0x696e6469u))};
@@ -133,7 +133,7 @@ inline Quantized sample_ray(const SceneView& scene, const A& accel, const Reques
   Path path =
       start_path({origin, direction, infinity, u[3]}, sample_wavelengths(scene, request.observer, u[2]), sampler);
   trace<Integrators>(scene, accel, path);
-  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, path.alpha, u[2]);
+  const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, alpha_of(path), u[2]);
   return quantize(channels, inverse_step, dither_key(key, index));
 }
 
