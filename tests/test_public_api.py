@@ -112,10 +112,9 @@ def test_a_rendered_scene_can_be_copied_and_pickled() -> None:
         assert accuray.render(other, spp=4).pixels_equal(image)
 
 
-def test_two_environments_and_degenerate_shapes_are_scene_errors() -> None:
+def test_degenerate_shapes_are_scene_errors() -> None:
     base = {"materials": {"m": {"type": "diffuse"}}}
     broken = {
-        "lights.b": {"lights": {"a": {"type": "constant"}, "b": {"type": "constant"}}},
         "shapes.r": {"shapes": {"r": {"type": "rectangle", "edge_v": [2, 0, 0], "material": "m"}}},
         "shapes.d": {"shapes": {"d": {"type": "disk", "normal": [0, 0, 0], "material": "m"}}},
         "camera.up": {"camera": {"type": "perspective", "up": [0, 0, 1]}},

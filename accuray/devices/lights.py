@@ -41,24 +41,31 @@ class LightLowering:
 
     def add(self, light: Values) -> None:
         """Adds one light."""
+        adders = {"environment": self._add_environment, "sky": self._add_sky, "sun": self._add_sun}
+        adders.get(light["type"], self._add_lamp)(light)
+
+    def _add_environment(self, light: Values) -> None:
+        self._need_rgb_table()
+        picture, srgb = self._picture(light["pixels"]), light["color_space"] == "srgb"
+        self._builder.add_environment(self._values(light), matrix(light["transform"]), picture, srgb)
+
+    def _add_sky(self, light: Values) -> None:
+        values = self._values(light)
+        coefficients = (np.array(numbers) for numbers in data.sky())
+        self._builder.add_sky(values, values["ground_albedo"], *coefficients)
+
+    def _add_sun(self, light: Values) -> None:
+        irradiance = light["irradiance"]
+        emission = self._spectrum(light["radiance"] if irradiance is None else irradiance)
+        self._builder.add_sun(self._values(light), emission, irradiance is not None)
+
+    def _add_lamp(self, light: Values) -> None:
+        """One of a single spectrum, whose amount may be that of all of it."""
         from accuray._core import lower as core
 
-        named = light["type"] not in ("environment", "sky", "sun")
-        values = self._values({key: v for key, v in light.items() if not (named and isinstance(v, Spectrum))})
-        if light["type"] == "environment":
-            self._need_rgb_table()
-            srgb = light["color_space"] == "srgb"
-            self._builder.add_environment(values, matrix(light["transform"]), self._picture(light["pixels"]), srgb)
-        elif light["type"] == "sky":
-            coefficients = (np.array(numbers) for numbers in data.sky())
-            self._builder.add_sky(values, values["ground_albedo"], *coefficients)
-        elif light["type"] == "sun":
-            irradiance = light["irradiance"]
-            emission = self._spectrum(light["radiance"] if irradiance is None else irradiance)
-            self._builder.add_sun(values, emission, irradiance is not None)
-        else:
-            made = lamp(light, values, core.lamp_power)
-            self._builder.add_light(light["type"], values, self._spectrum(made.emission), made.photometry)
+        values = self._values({key: value for key, value in light.items() if not isinstance(value, Spectrum)})
+        made = lamp(light, values, core.lamp_power)
+        self._builder.add_light(light["type"], values, self._spectrum(made.emission), made.photometry)
 
 
 def matrix(transform: Any) -> list[float] | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from accuray.scene.errors import Where
+from accuray.scene.transforms import check_rigid
 
 MOST = 1e30
 """Largest texel: sums over a map stay finite."""
@@ -16,6 +17,8 @@ def check_environments(lights: dict[str, dict[str, Any]], where: Where) -> None:
         pixels = light.get("pixels")
         if pixels is None:
             continue
+        if light["transform"] is not None:
+            check_rigid(light["transform"], "an environment", where.child(name, "transform"))
         stored_as_float = pixels.dtype.kind == "f"
         if light["color_space"] == "auto":
             light["color_space"] = "linear" if stored_as_float else "srgb"

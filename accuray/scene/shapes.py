@@ -19,7 +19,8 @@ def check_shapes(shapes: Shapes, schema: Schema, where: Where) -> None:
     types = schema.family("shape").types
     for name, shape in shapes.items():
         if types[shape["type"]].rigid and shape["transform"] is not None:
-            check_rigid(shape["transform"], shape["type"], where.child(name, "transform"))
+            noun, place = f"a shape of the type {shape['type']}", where.child(name, "transform")
+            check_rigid(shape["transform"], noun, place, "; or a mesh, rectangle or solid, which take any")
         links = _links(types[shape["type"]])
         if shape["material"] is None and not links:
             raise where.child(name).error("has no material", allowed='material = "NAME" of a table in [materials]')

@@ -206,12 +206,14 @@ def is_similarity(matrix: npt.NDArray[np.float64]) -> bool:
     return not skew and 0.0 < size < math.inf
 
 
-def check_rigid(matrix: npt.NDArray[np.float64], noun: str, where: Where) -> None:
-    """SceneError at ``where`` unless the transform leaves a shape of this type what it is."""
+def check_rigid(matrix: npt.NDArray[np.float64], noun: str, where: Where, instead: str = "") -> None:
+    """SceneError at ``where`` if the transform does more than turn, mirror, move and scale what ``noun`` names.
+
+    ``instead`` says what else is allowed.
+    """
     if not is_similarity(matrix):
         raise where.error(
-            f"shears or stretches a shape of the type {noun}",
-            allowed="a rotation times one scale, plus a translation; or a mesh, rectangle or solid, which take any",
+            f"shears or stretches {noun}", allowed=f"a rotation times one scale, plus a translation{instead}"
         )
 
 

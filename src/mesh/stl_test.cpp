@@ -43,7 +43,7 @@ std::string text(const Corners& corners) {
   for (size_t i = 0; i < corners.size(); ++i) {
     if (i % 3 == 0) file += " facet normal 0 0 1\n  outer loop\n";
     file += "   vertex";
-    for (float x : corners[i]) file += " " + std::to_string(x);
+    for (float x : corners[i]) file.append(" ").append(std::to_string(x));
     file += i % 3 == 2 ? "\n  endloop\n endfacet\n" : "\n";
   }
   return file + "endsolid a b\n";

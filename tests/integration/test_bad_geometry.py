@@ -264,7 +264,9 @@ def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
     textures = {name: lengths("texture", table) for name, table in scene.textures.items()}
     lights = {name: lengths("light", table) for name, table in scene.lights.items()}
     for table in lights.values():
-        if table["type"] == "point":
+        if table["type"] == "ies":
+            table["multiplier"] *= factor**2
+        elif "intensity" in table:
             table["intensity"] = replace(table["intensity"], scale=table["intensity"].scale * factor**2)
     camera = lengths("camera", scene.camera)
     return replace(scene, shapes=shapes, materials=materials, textures=textures, lights=lights, camera=camera)

@@ -70,7 +70,9 @@ def test_converted_scenes_are_the_models(write: object, tmp_path: Path) -> None:
 
 
 def test_commands(capsys: pytest.CaptureFixture[str]) -> None:
-    write_glb()
+    file = every_feature()
+    file.data["extensionsUsed"] = [*file.data.get("extensionsUsed", []), "EXT_unheard_of"]
+    file.save(Path("a.glb"))
     assert main(["convert", "a.glb", "b.toml"]) == 0
     said = capsys.readouterr()
     notes = accuray.load("a.glb").model_notes

@@ -118,7 +118,7 @@ BUGS = (
     ),
     bug(
         "point-light-falls-with-distance",
-        "light/point.h",
+        "light/aim.h",
         "1.0f / (s.distance * s.distance)",
         "1.0f / s.distance",
         "C1.point/mis",

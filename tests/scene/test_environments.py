@@ -33,7 +33,7 @@ BAD = [
     ({"pixels": GREY, "color_space": "data"}, "lights.l.color_space", '"auto", "srgb", "linear"'),
     ({"pixels": GREY, "scale": -1}, "lights.l.scale", "at least 0"),
     ({"pixels": GREY, "rotation": "2 m"}, "lights.l.rotation", "deg"),
-    ({"pixels": GREY, "transform": {"scale": [1, 2, 1]}}, "lights.l.transform.scale", "one number"),
+    ({"pixels": GREY, "transform": {"scale": [1, 2, 1]}}, "lights.l.transform", "one scale"),
     ({"file": "missing.exr"}, "lights.l.file", '"missing.exr" does not exist'),
     ({"file": "../a.exr"}, "lights.l.file", "leads outside"),
     ({"type": "sun", "towards": [0, 0, 0]}, "lights.l.towards", "any length but zero"),

@@ -140,9 +140,11 @@ inline Shares shares_of(const SceneView& scene, const LightNode& node, Vec3 poin
   return running_sums(select_greater(weight, lanes(0.0f), max(weight, lanes(least_share * total)), weight));
 }
 
-// Fresh digits for a number that has decided about rare things: a function of the number and the point.
+// Fresh digits for a number that has decided about rare things: a function of the number and of the point's digits
+// without their exponents, so that the unit of length does not matter.
 inline float fresh(float u, Vec3 point) {
-  return uniform(hash(hash(bits_of(u), bits_of(point.x)), bits_of(point.y), bits_of(point.z)));
+  const auto digits = [](float x) { return bits_of(x) & 0x007fffffu; };
+  return uniform(hash(hash(bits_of(u), digits(point.x)), digits(point.y), digits(point.z)));
 }
 
 }  // namespace tree
