@@ -4,7 +4,7 @@ Images are compared by the means of 8x8 blocks in X, Y and Z. A comparison count
 block's difference is at most 1 % of the block's mean; a scene whose images stay noisier than that at `MOST_SPP` fails
 with "no power" until `fair.FAIR` says how it is made fair, or `JUDGES` names what judges it instead.
 
-The quick tier compares path tracing as users get it on a third of the scenes, and on a sixth one of the others;
+The quick tier compares path tracing as users get it on a quarter of the scenes, and on an eighth one of the others;
 which these are changes with ACCURAY_TEST_SEED. `pytest -m long` compares all.
 """
 
@@ -60,8 +60,8 @@ def images_of_interest() -> list[tuple[str, str]]:
     """What the quick tier compares: (scene, integrator)."""
     others = [name for name in candidates() if name != "path/mis"]
     turns = [(i + SEED, scene) for i, scene in enumerate(all_scenes())]
-    pairs = [(scene, "path/mis") for turn, scene in turns if turn % 3 == 0 or scene in ALWAYS]
-    return pairs + [(scene, others[turn // 6 % len(others)]) for turn, scene in turns if turn % 6 == 1]
+    pairs = [(scene, "path/mis") for turn, scene in turns if turn % 4 == 0 or scene in ALWAYS]
+    return pairs + [(scene, others[turn // 8 % len(others)]) for turn, scene in turns if turn % 8 == 1]
 
 
 @functools.cache
