@@ -167,7 +167,7 @@ Photometry to_photometry(const std::optional<PhotometryArrays>& arrays) {
   return photometry;
 }
 
-void bind_parts(nb::class_<SceneBuilder>& builder) {
+void bind_surfaces(nb::class_<SceneBuilder>& builder) {
   builder
       .def(
           "add_material",
@@ -199,7 +199,12 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
              uint32_t material,
              bool prototype) { return b.add_shape(type, to_values(values), transform, material, prototype); },
           "type"_a, "values"_a, "transform"_a.none(), "material"_a, "prototype"_a)
-      .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(), "material"_a.none())
+      .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(),
+           "material"_a.none());
+}
+
+void bind_lights(nb::class_<SceneBuilder>& builder) {
+  builder
       .def(
           "add_light",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, SpectrumRef emission,
@@ -227,7 +232,11 @@ void bind_parts(nb::class_<SceneBuilder>& builder) {
                       {to_vector(sky), to_vector(radiance), to_vector(sun), to_vector(limb)});
           },
           "values"_a, "albedo"_a, "sky"_a, "radiance"_a, "sun"_a, "limb"_a,
-          "The coefficients of accuray.data.sky(), flat.")
+          "The coefficients of accuray.data.sky(), flat.");
+}
+
+void bind_view(nb::class_<SceneBuilder>& builder) {
+  builder
       .def(
           "set_camera",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, double width, double height) {
@@ -313,7 +322,9 @@ void bind_lower(nb::module_& module) {
       "cmf: (471, 3) colour matching functions; d65: (471,) scaled to Y = 1; both at 360, 361, ... 830 nm.");
   bind_spectra(builder);
   bind_textures(builder);
-  bind_parts(builder);
+  bind_surfaces(builder);
+  bind_lights(builder);
+  bind_view(builder);
 
   bind_lamps(lower);
   lower.attr("SOLIDS") = names_of(Solids{});

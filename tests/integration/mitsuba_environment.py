@@ -12,8 +12,9 @@ import sys
 
 import mitsuba as mi
 import numpy as np
+from mitsuba_images import View
 
-SIZE, SPP, IMAGES = 32, 512, 16
+VIEW = View((0.5, 1.0, 3.2), (0, 0.6, 0), fov=50, size=32, images=16, pixels="luminance")
 
 mi.set_variant("llvm_ad_mono")
 Transform = mi.ScalarTransform4f
@@ -25,32 +26,16 @@ def grey(value: float) -> dict[str, object]:
 
 def main() -> None:
     pixels = np.repeat(np.load(sys.argv[1])[:, :, None], 3, axis=2)
-    film = {
-        "type": "hdrfilm", "width": SIZE, "height": SIZE, "pixel_format": "luminance", "component_format": "float32",
-        "rfilter": {"type": "box"},
-    }  # fmt: skip
-    scene = mi.load_dict(
-        {
-            "type": "scene",
-            "integrator": {"type": "path", "max_depth": -1},
-            "sensor": {
-                "type": "perspective",
-                "fov": 50,
-                "fov_axis": "y",
-                "to_world": Transform().look_at([0.5, 1.0, 3.2], [0, 0.6, 0], [0, 1, 0]),
-                "film": film,
-                "sampler": {"type": "independent", "sample_count": SPP},
-            },
-            "sky": {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(pixels))},
-            "ball": {"type": "sphere", "center": [0, 0.5, 0], "radius": 0.5, "bsdf": grey(0.7)},
-            "floor": {
-                "type": "rectangle",
-                "to_world": Transform().rotate([1, 0, 0], -90) @ Transform().scale([2, 2, 1]),
-                "bsdf": grey(0.5),
-            },
-        }
-    )
-    np.save(sys.argv[2], np.stack([np.array(mi.render(scene, seed=seed))[:, :, 0] for seed in range(IMAGES)]))
+    parts = {
+        "sky": {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(pixels))},
+        "ball": {"type": "sphere", "center": [0, 0.5, 0], "radius": 0.5, "bsdf": grey(0.7)},
+        "floor": {
+            "type": "rectangle",
+            "to_world": Transform().rotate([1, 0, 0], -90) @ Transform().scale([2, 2, 1]),
+            "bsdf": grey(0.5),
+        },
+    }
+    np.save(sys.argv[2], VIEW.of(parts)[..., 0])
 
 
 if __name__ == "__main__":

@@ -12,8 +12,9 @@ from typing import Any
 
 import mitsuba as mi
 import numpy as np
+from mitsuba_images import View
 
-SIZE, SPP, IMAGES = 24, 512, 8
+VIEW = View((0.5, -1.0, 3.5), depth=2)
 WHITE = {"type": "spectrum", "value": 10.0}
 SURFACE = {"type": "diffuse", "reflectance": {"type": "spectrum", "value": 1.0}}
 
@@ -35,26 +36,7 @@ LAMPS: dict[str, dict[str, Any]] = {
 
 
 def images(light: dict[str, Any]) -> Any:
-    scene = mi.load_dict(
-        {
-            "type": "scene",
-            "integrator": {"type": "path", "max_depth": 2},
-            "sensor": {
-                "type": "perspective",
-                "fov": 30,
-                "fov_axis": "y",
-                "to_world": Transform().look_at([0.5, -1.0, 3.5], [0, 0, 0], [0, 1, 0]),
-                "film": {
-                    "type": "hdrfilm", "width": SIZE, "height": SIZE, "pixel_format": "xyz",
-                    "component_format": "float32", "rfilter": {"type": "box"},
-                },
-                "sampler": {"type": "independent", "sample_count": SPP},
-            },
-            "light": light,
-            "square": {"type": "rectangle", "bsdf": SURFACE},
-        }
-    )  # fmt: skip
-    return np.stack([np.array(mi.render(scene, seed=seed)) for seed in range(IMAGES)])
+    return VIEW.of({"light": light, "square": {"type": "rectangle", "bsdf": SURFACE}})
 
 
 if __name__ == "__main__":

@@ -14,8 +14,9 @@ from typing import Any
 
 import mitsuba as mi
 import numpy as np
+from mitsuba_images import View
 
-SIZE, SPP, IMAGES = 24, 256, 16
+VIEW = View((0.5, -1.6, 3.2), spp=256, images=16, pixels="luminance")
 
 mi.set_variant("llvm_ad_mono")
 Transform = mi.ScalarTransform4f
@@ -33,28 +34,8 @@ def lamp(height: float) -> dict[str, Any]:
 
 
 def images(bsdf: dict[str, Any]) -> Any:
-    film = {
-        "type": "hdrfilm", "width": SIZE, "height": SIZE, "pixel_format": "luminance", "component_format": "float32",
-        "rfilter": {"type": "box"},
-    }  # fmt: skip
-    scene = mi.load_dict(
-        {
-            "type": "scene",
-            "integrator": {"type": "path", "max_depth": -1},
-            "sensor": {
-                "type": "perspective",
-                "fov": 30,
-                "fov_axis": "y",
-                "to_world": Transform().look_at([0.5, -1.6, 3.2], [0, 0, 0], [0, 1, 0]),
-                "film": film,
-                "sampler": {"type": "independent", "sample_count": SPP},
-            },
-            "above": lamp(1.5),
-            "below": lamp(-1.5),
-            "square": {"type": "rectangle", "bsdf": bsdf},
-        }
-    )
-    return np.stack([np.array(mi.render(scene, seed=seed))[:, :, 0] for seed in range(IMAGES)])
+    square = {"type": "rectangle", "bsdf": bsdf}
+    return VIEW.of({"above": lamp(1.5), "below": lamp(-1.5), "square": square})[..., 0]
 
 
 def main() -> None:

@@ -18,9 +18,10 @@ struct CoatedAt : CoatLayer {
     if (wo.z == 0.0f || wi.z == 0.0f) return lanes(0.0f);
     if (is_bare(wo)) return coat_lobes(*this, false, wo, wi).value;
     if (is_blocked(wo, wi)) return lanes(0.0f);
-    if (twice) [[unlikely]]
-      return wo.z < 0.0f || upper_is_delta() ? below_eval(*this, wo, wi)
-                                             : below_eval(*this, wo, wi) + coat_eval(*this, wo, wi);
+    if (twice) [[unlikely]] {
+      const Spectrum below = below_eval(*this, wo, wi);
+      return wo.z < 0.0f || upper_is_delta() ? below : below + coat_eval(*this, wo, wi);
+    }
     return coat_eval(*this, wo, wi);
   }
   float pdf(Vec3 wo, Vec3 wi) const {
