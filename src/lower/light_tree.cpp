@@ -144,7 +144,7 @@ uint32_t axis_word(const Point& normal) {
   uint32_t word = 0;
   for (size_t axis = 0; axis < 3; ++axis) {
     const double share = (std::clamp(normal[axis], -1.0, 1.0) + 1.0) / static_cast<double>(tree::coordinate_step);
-    word |= static_cast<uint32_t>(share + 0.5) << (tree::coordinate_bits * axis);
+    word |= static_cast<uint32_t>(std::lround(share)) << (tree::coordinate_bits * axis);
   }
   return word;
 }
@@ -211,6 +211,7 @@ class TreeBuilder {
   // By number alone: where splits of unequal halves would make the tree too deep.
   static std::vector<Range> equal_parts(Range range) {
     std::vector<Range> parts;
+    parts.reserve(kWidth);
     for (size_t k = 0; k < kWidth; ++k) {
       parts.push_back({range.begin + range.count() * k / kWidth, range.begin + range.count() * (k + 1) / kWidth, 0.0});
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 namespace accuray {
 
@@ -140,7 +141,7 @@ LightTree LightTable::tree(float scene_radius) const {
   for (uint32_t i = 0; i < records_.size(); ++i) {
     if (!(power[i] > 0.0)) continue;
     with_light(records_[i], [&](const auto& light) {
-      if constexpr (light.infinite) {
+      if constexpr (std::remove_cvref_t<decltype(light)>::infinite) {
         // Seen from all sides alike; the flux into the sphere around the scene, spread over the sphere.
         const double radius = scene_radius;
         distant.push_back({i, power[i] / (4.0 * static_cast<double>(pi) * radius * radius)});

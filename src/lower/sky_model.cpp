@@ -121,8 +121,10 @@ SkyBrightness sky_brightness(std::span<const float> table, Vec3 sun, std::span<c
     for (uint32_t column = 0; column < kWidth; ++column) {
       double luminance = 0.0;
       for (uint32_t quarter = 0; quarter < 4; ++quarter) {
-        const Vec2 place = {(static_cast<float>(2 * column + quarter % 2) + 0.5f) / (2 * kWidth),
-                            (static_cast<float>(2 * row + quarter / 2) + 0.5f) / (2 * kHeight)};
+        const uint32_t x = 2 * column + quarter % 2;
+        const uint32_t y = 2 * row + quarter / 2;
+        const Vec2 place = {(static_cast<float>(x) + 0.5f) / (2 * kWidth),
+                            (static_cast<float>(y) + 0.5f) / (2 * kHeight)};
         const SkyDirection direction = SkyDirection::of(map_direction(place), sun);
         for (size_t band = 0; band < sky_bands; ++band) {
           const auto radiance = static_cast<double>(sky_radiance(table.data() + band * sky_terms, direction));

@@ -127,7 +127,7 @@ TEST(CreasedNormals, OfEverySmoothEdgeAreTheSmoothOnes) {
   const Floats smooth = smooth_normals(strip.positions, strip.indices);
   ASSERT_EQ(mesh.source.size(), strip.positions.size() / 3);
   for (size_t i = 0; i < mesh.source.size(); ++i) {
-    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(mesh.normals[3 * i + k], smooth[3 * mesh.source[i] + k], 1e-6);
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(mesh.normals[3 * i + k], smooth[3 * size_t{mesh.source[i]} + k], 1e-6);
   }
 }
 
