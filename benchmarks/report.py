@@ -41,10 +41,15 @@ TARGETS = (
     Target("cornell", "samples_per_s", "cycles", 4.0, "samples/s of Cycles"),
     Target("efficiency", "efficiency", "mitsuba:llvm_ad_spectral", 2.0, "efficiency of Mitsuba llvm_ad_spectral"),
     Target("efficiency", "efficiency", "cycles", 30.0, "efficiency of Cycles"),
-    Target("glossy", "efficiency", "mitsuba", 1.0, "efficiency of Mitsuba, rough metal over a textured floor"),
-    Target("glossy", "efficiency", "cycles", 1.0, "efficiency of Cycles, rough metal over a textured floor"),
-    Target("frosted", "efficiency", "mitsuba", 1.0, "efficiency of Mitsuba, rough glass"),
-    Target("frosted", "efficiency", "cycles", 1.0, "efficiency of Cycles, rough glass"),
+    *(
+        Target(scene, "efficiency", peer, 1.0, f"efficiency of {name}, {what}")
+        for scene, what in (("glossy", "rough metal over a textured floor"), ("frosted", "rough glass"))
+        for peer, name in (
+            ("mitsuba:llvm_ad_spectral", "Mitsuba llvm_ad_spectral"),
+            ("mitsuba:llvm_ad_rgb", "Mitsuba llvm_ad_rgb"),
+            ("cycles", "Cycles"),
+        )
+    ),
     Target("million", "samples_per_s", "", 1.0, "samples/s of the fastest peer, 1 M triangles"),
 )
 

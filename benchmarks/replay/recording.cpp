@@ -97,7 +97,7 @@ uint64_t render(const EmbreeScene& scene, const Request& request, uint32_t spp, 
   const size_t slots = size_t{request.width} * request.height * request.replicates;
   std::vector<int64_t> sums(slots * film_channels);
   std::vector<uint32_t> dropped(slots);
-  const FilmView film{sums.data(), dropped.data(), 0, 0, request.width, request.height};
+  const FilmView film{sums.data(), dropped.data(), 0, 0, request.width, request.height, film_channels};
   auto task = [&](uint32_t tile, const EmbreeAccel& accel, const std::atomic<bool>& stop) {
     return render_tile(scene.view(), accel, request, film, tile, 0, spp, stop);
   };
