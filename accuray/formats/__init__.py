@@ -6,17 +6,14 @@ files too: the public ``accuray.Scene`` comes from here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from importlib import import_module
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from accuray.formats import gltf, ies, image, json, mesh, toml
-from accuray.formats.converting import convert_model
-from accuray.formats.models import obj, plain
-from accuray.formats.models.expanding import expand
-from accuray.formats.models.model import ModelReader
+from accuray.formats import image, json, mesh, toml
 from accuray.formats.reading import SceneReader, load_scene
 from accuray.scene import Scene
 from accuray.scene.images import register_image_reader
@@ -24,7 +21,20 @@ from accuray.scene.meshes import MeshReader, register_reader
 from accuray.scene.models import register_expander
 from accuray.scene.photometry import register_photometry_reader
 
+if TYPE_CHECKING:
+    from accuray.formats.models.model import ModelReader
+
 __all__ = ["MESH_READERS", "MODEL_READERS", "SCENE_READERS", "Scene", "convert", "load"]
+
+
+def _late(module: str, function: str) -> Callable[..., Any]:
+    """A function of this package whose module is imported by the first call: most scenes need none of these."""
+
+    def call(*arguments: Any, **keywords: Any) -> Any:
+        return getattr(import_module(f"accuray.formats.{module}"), function)(*arguments, **keywords)
+
+    return call
+
 
 SCENE_READERS: dict[str, SceneReader] = {
     ".toml": toml.parse,
@@ -38,18 +48,18 @@ MESH_READERS: dict[str, MeshReader] = {
 }
 
 MODEL_READERS: dict[str, ModelReader] = {
-    ".gltf": gltf.read,
-    ".glb": gltf.read,
-    ".obj": obj.read,
-    ".ply": plain.read_ply,
-    ".stl": plain.read_stl,
+    ".gltf": _late("gltf", "read"),
+    ".glb": _late("gltf", "read"),
+    ".obj": _late("models.obj", "read"),
+    ".ply": _late("models.plain", "read_ply"),
+    ".stl": _late("models.plain", "read_stl"),
 }
 
 for _suffix, _reader in MESH_READERS.items():
     register_reader(_suffix, _reader)
 register_image_reader(image.read)
-register_photometry_reader(".ies", ies.read)
-register_expander(partial(expand, readers=MODEL_READERS))
+register_photometry_reader(".ies", _late("ies", "read"))
+register_expander(partial(_late("models.expanding", "expand"), readers=MODEL_READERS))
 
 
 def convert(model: str | PathLike[str], scene: str | PathLike[str]) -> list[str]:
@@ -59,6 +69,8 @@ def convert(model: str | PathLike[str], scene: str | PathLike[str]) -> list[str]
     is there under these names is replaced. Returns what could not be translated, which the scene file lists as well;
     the scene renders as the model does. Raises SceneError for the model, OSError for what cannot be written.
     """
+    from accuray.formats.converting import convert_model
+
     return convert_model(Path(model), Path(scene), MODEL_READERS)
 
 

@@ -7,16 +7,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from accuray.formats.merging import apply_override, merge, parse_override
-from accuray.formats.models.expanding import model_document
-from accuray.formats.models.model import ModelReader
 from accuray.scene import Scene, SceneError
 from accuray.scene import schema as schemas
 from accuray.scene.errors import Document, Source, Where, show
 from accuray.scene.paths import Confinement, check_regular, display_path
 from accuray.scene.scene import build, check_file_keys
+
+if TYPE_CHECKING:
+    from accuray.formats.models.model import ModelReader
 
 SceneReader = Callable[[str, str], dict[str, Any]]
 """(text, name for errors) -> dict; raises SceneError."""
@@ -39,6 +40,8 @@ def load_scene(
     files = Confinement.around(real.parent, folders)
     notes: list[str] = []
     if real.suffix.lower() in models:
+        from accuray.formats.models.expanding import model_document
+
         lights = frozenset(schemas.current().family("light").types)
         document, notes = model_document(real, shown, files, lights, models)
     else:

@@ -12,6 +12,7 @@ from typing import Any
 
 from accuray.scene.arrays import scale_to_metres
 from accuray.scene.errors import Where
+from accuray.scene.readers import Readers
 from accuray.scene.schema import Type
 
 MeshReader = Callable[[Path], dict[str, Any]]
@@ -19,12 +20,8 @@ MeshReader = Callable[[Path], dict[str, Any]]
 None normals (N, 3), uvs (N, 2), colors (N, 4), linear; and "report", a dict of what was left out or made up. Raises
 ValueError with file and line for a wrong file."""
 
-_readers: dict[str, MeshReader] = {}
-
-
-def register_reader(suffix: str, reader: MeshReader) -> None:
-    """Use ``reader`` for files with this lower-case suffix (".obj")."""
-    _readers[suffix] = reader
+_readers: Readers[dict[str, Any]] = Readers()
+register_reader = _readers.register
 
 
 def fill_from_file(type_: Type, values: dict[str, Any], path: Path, where: Where) -> dict[str, Any]:
@@ -32,14 +29,7 @@ def fill_from_file(type_: Type, values: dict[str, Any], path: Path, where: Where
 
     Coordinates in the file are in the length unit of the scene file that names it.
     """
-    reader = _readers.get(path.suffix.lower())
-    if reader is None:
-        known = ", ".join(_readers) or "none (import accuray.formats)"
-        raise where.error("has no reader", value=path.name, allowed=known)
-    try:
-        arrays = reader(path)
-    except (ValueError, OSError) as error:
-        raise where.error(f"cannot be read: {error}", value=path.name) from error
+    arrays = _readers.read(path, where)
     for param in type_.params:
         if param.kind == "array" and arrays.get(param.name) is not None:
             array = arrays[param.name]

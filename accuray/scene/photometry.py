@@ -5,13 +5,13 @@ The readers belong to ``accuray.formats``, which registers them here when it is 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from accuray.scene.amounts import Amount, scaled_to
 from accuray.scene.errors import Where
+from accuray.scene.readers import Readers
 from accuray.scene.schema import Schema
 
 if TYPE_CHECKING:
@@ -37,15 +37,8 @@ class Photometry:
     lamp_lumens: float | None
 
 
-PhotometryReader = Callable[[Path], Photometry]
-"""Raises ValueError with the line for a wrong file."""
-
-_readers: dict[str, PhotometryReader] = {}
-
-
-def register_photometry_reader(suffix: str, reader: PhotometryReader) -> None:
-    """Use ``reader`` for files with this lower-case suffix (".ies")."""
-    _readers[suffix] = reader
+_readers: Readers[Photometry] = Readers()
+register_photometry_reader = _readers.register
 
 
 def read_photometries(lights: dict[str, dict[str, Any]], schema: Schema, where: Where) -> None:
@@ -58,14 +51,7 @@ def read_photometries(lights: dict[str, dict[str, Any]], schema: Schema, where: 
 
 
 def _read(path: Path, where: Where) -> Photometry:
-    reader = _readers.get(path.suffix.lower())
-    if reader is None:
-        known = ", ".join(_readers) or "none (import accuray.formats)"
-        raise where.error("has no reader", value=path.name, allowed=known)
-    try:
-        found = reader(path)
-    except (ValueError, OSError) as error:
-        raise where.error(f"cannot be read: {error}", value=path.name) from error
+    found = _readers.read(path, where)
     for array in (found.vertical, found.horizontal, found.candela):
         array.flags.writeable = False
     return found

@@ -157,7 +157,7 @@ def test_override_beats_an_included_file(tmp_path: Path) -> None:
 
 def test_mesh_file_fills_the_arrays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With a reader of its own, so that it needs no compiled module."""
-    monkeypatch.setattr("accuray.scene.meshes._readers", {})
+    monkeypatch.setattr("accuray.scene.meshes._readers._readers", {})
     positions = np.array([[0, 0, 0], [500, 0, 0], [0, 500, 0]], dtype=np.float32)
     arrays = {"positions": positions, "faces": np.array([[0, 1, 2]], dtype=np.uint32), "normals": None, "uvs": None}
     register_reader(".obj", lambda _path: {**arrays, "report": {"degenerate_triangles": 3}})
