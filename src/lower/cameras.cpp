@@ -11,12 +11,6 @@ namespace accuray {
 
 namespace {
 
-Double3 unit(const Double3& v, const char* key, const char* problem) {
-  const double size = length(v);
-  if (!(size > 0.0) || !std::isfinite(size)) throw BadParameter(key, problem);
-  return {v[0] / size, v[1] / size, v[2] / size};
-}
-
 std::string metres(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%g m", value);

@@ -12,10 +12,7 @@ namespace {
 // Towards the sun, from its direction or its angles; a unit vector.
 std::array<double, 3> sun_direction(const Values& values) {
   if (values.contains("towards")) {
-    const auto given = vec_of(values, "towards");
-    const double size = length(given);
-    if (!(size > 0.0)) throw BadParameter("towards", "has no direction: allowed is any length but zero");
-    return {given[0] / size, given[1] / size, given[2] / size};
+    return unit(vec_of(values, "towards"), "towards", "has no direction: allowed is any length but zero");
   }
   const SinCosDouble up = sincos(number_of(values, "elevation"));
   const SinCosDouble around = sincos(number_of(values, "azimuth"));

@@ -11,12 +11,6 @@ namespace {
 
 constexpr double kRadians = M_PI / 180.0;
 
-Double3 unit(const Double3& v, const char* key, const char* problem) {
-  const double size = length(v);
-  if (!(size > 0.0) || !std::isfinite(size)) throw BadParameter(key, problem);
-  return scaled(1.0 / size, v);
-}
-
 Double3 axis_of(const Values& values) {
   if (!values.contains("target")) {
     return unit(vec_of(values, "direction"), "direction", "has no direction: allowed is any length but zero");

@@ -14,6 +14,7 @@
 #include "kernels/dispatch.h"
 #include "kernels/scene_view.h"
 #include "kernels/schema.h"
+#include "lower/double3.h"
 
 namespace accuray {
 
@@ -48,6 +49,12 @@ inline double number_of(const Values& values, std::string_view name) {
 }
 inline std::array<double, 3> vec_of(const Values& values, std::string_view name) {
   return std::get<std::array<double, 3>>(value_of(values, name));
+}
+// The direction of a vector; BadParameter at `key` with `problem` if it has none.
+inline Double3 unit(const Double3& v, const char* key, const char* problem) {
+  const double size = length(v);
+  if (!(size > 0.0) || !std::isfinite(size)) throw BadParameter(key, problem);
+  return {v[0] / size, v[1] / size, v[2] / size};
 }
 inline Vec3 to_vec3(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "kernels/math/functions.h"
+#include "kernels/math/interval.h"
 #include "kernels/scene_view.h"
 
 namespace accuray {
@@ -19,21 +20,6 @@ inline Vec3 map_direction(Vec2 place) {
   const SinCos longitude = sincos((place.x - 0.5f) * (2.0f * pi));
   const SinCos polar = sincos(place.y * pi);
   return {polar.sin * longitude.sin, polar.cos, -(polar.sin * longitude.cos)};
-}
-
-// Interval of increasing sums that u in [0, 1) lies in, never an empty one.
-inline uint32_t interval_of(const float* sums, uint32_t count, float u) {
-  uint32_t low = 0;
-  uint32_t high = count;
-  while (high - low > 1) {
-    const uint32_t middle = (low + high) / 2;
-    if (sums[middle] <= u) {
-      low = middle;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
 }
 
 // A density that is constant in each of width x height cells of the map: running sums over the rows, and over the

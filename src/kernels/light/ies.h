@@ -11,6 +11,7 @@
 
 #include "kernels/light/aim.h"
 #include "kernels/math/functions.h"
+#include "kernels/math/interval.h"
 
 namespace accuray {
 
@@ -87,17 +88,8 @@ struct IesLight {
     float along;
   };
   static Between between(const float* angles, uint32_t count, float angle) {
-    uint32_t low = 0;
-    uint32_t high = count - 1;
-    while (high - low > 1) {
-      const uint32_t middle = (low + high) / 2;
-      if (angles[middle] <= angle) {
-        low = middle;
-      } else {
-        high = middle;
-      }
-    }
-    return {low, clamp((angle - angles[low]) / (angles[high] - angles[low]), 0.0f, 1.0f)};
+    const uint32_t low = interval_of(angles, count - 1, angle);
+    return {low, clamp((angle - angles[low]) / (angles[low + 1] - angles[low]), 0.0f, 1.0f)};
   }
   // Between two candelas of one horizontal angle.
   static float mixed(const float* values, Between at) {

@@ -9,6 +9,7 @@
 // coefficients per nm^2 and nm lose about three digits to cancellation.
 #pragma once
 
+#include "kernels/math/interval.h"
 #include "kernels/port.h"
 
 namespace accuray {
@@ -68,15 +69,7 @@ inline Cell uniform_cell(float v, int32_t n) {
 
 // Cell of v in [0, 1] on the increasing nodes, by bisection.
 inline Cell scale_cell(const float* nodes, int32_t n, float v) {
-  int32_t low = 0, high = n - 1;
-  while (high - low > 1) {
-    int32_t middle = (low + high) / 2;
-    if (nodes[middle] <= v) {
-      low = middle;
-    } else {
-      high = middle;
-    }
-  }
+  const auto low = static_cast<int32_t>(interval_of(nodes, static_cast<uint32_t>(n - 1), v));
   return {low, (v - nodes[low]) / (nodes[low + 1] - nodes[low])};
 }
 
