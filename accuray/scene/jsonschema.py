@@ -36,6 +36,7 @@ def json_schema() -> Node:
         },
         "include": {"type": "array", "items": {"type": "string"}, "description": "Files merged below this one."},
         "render": _table(schema.family("render").header),
+        "animation": _table(schema.family("animation").header),
         "film": _film(schema.family("film"), schema.family("filter")),
         "camera": _one_of(schema.family("camera").types),
         "integrator": _one_of(schema.family("integrator").types),

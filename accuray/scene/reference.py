@@ -91,7 +91,7 @@ def reference_markdown() -> str:
             amounts=", ".join(f"`{name}` ({' or '.join(choices)})" for name, choices in NAMES.items()),
         )
     ]
-    for name, title in (("render", "Rendering"), ("film", "Film")):
+    for name, title in (("render", "Rendering"), ("film", "Film"), ("animation", "Animation")):
         header = schema.family(name).header
         parts.append(f"## {title}: `[{name}]`\n\n{_table(header.params)}")
     for name, title, section in (

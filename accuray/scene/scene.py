@@ -11,6 +11,7 @@ from typing import Any
 
 from accuray.scene import openpbr
 from accuray.scene import schema as schemas
+from accuray.scene.clock import STILL, Clock
 from accuray.scene.composition import check_parts
 from accuray.scene.environments import check_environments
 from accuray.scene.errors import Document, Source, Where
@@ -27,7 +28,10 @@ from accuray.scene.textures import check_bumps, check_opacity, check_vertices, s
 from accuray.scene.units import LENGTH_UNITS
 
 FORMAT_VERSION = 1
-SECTIONS = ("render", "film", "camera", "integrator", "models", "spectra", "textures", "materials", "lights", "shapes")
+SECTIONS = (
+    "render", "film", "animation", "camera", "integrator", "models", "spectra", "textures", "materials", "lights",
+    "shapes",
+)  # fmt: skip
 FILE_KEYS = ("accuray", "length_unit", "include")
 FILM_BITS = 24
 MAX_NAME = 256
@@ -42,7 +46,7 @@ class Scene:
     types, and every parameter of that type: SI values as ``accuray.scene.kinds`` describes, None for what is neither
     given nor has a default; a light with a measured distribution has it as "photometry". ``path`` is the file the
     scene was read from, None for scenes built in Python; ``mesh_reports`` says, by shape, what was left out of mesh
-    files or made up, ``model_notes`` what could not be translated of models.
+    files or made up, ``model_notes`` what could not be translated of models; ``clock`` is the moment of the frame.
     """
 
     film: dict[str, Any]
@@ -57,6 +61,7 @@ class Scene:
     mesh_reports: dict[str, dict[str, Any]] = field(default_factory=dict)
     textures: dict[str, dict[str, Any]] = field(default_factory=dict)
     model_notes: tuple[str, ...] = ()
+    clock: Clock = STILL
 
     @classmethod
     def from_dict(
@@ -97,6 +102,7 @@ def build(
     document, more_notes = expand_models(document, schema, files)
     top, data = Where(document), document.data
     scope = Scope(document, schema, files)
+    scope.clock = _clock(scope)
     film, pixel_filter = _film(scope)
     textures = _named("textures", schema.family("texture").types, scope)
     materials = _named("materials", schema.material_types, scope)
@@ -128,6 +134,7 @@ def build(
         mesh_reports=scope.mesh_reports,
         textures=textures,
         model_notes=(*notes, *more_notes),
+        clock=scope.clock,
     )
 
 
@@ -167,6 +174,17 @@ def _named(section: str, types: dict[str, schemas.Type], scope: Scope) -> dict[s
 def _check_name(name: str, where: Where) -> None:
     if not name or len(name) > MAX_NAME or any(ord(character) < 32 for character in name):
         raise where.child(name).error("is not a name", value=name, allowed=f"1 to {MAX_NAME} printable characters")
+
+
+def _clock(scope: Scope) -> Clock:
+    where = Where(scope.document, ("animation",))
+    values = resolve_params(scope.schema.family("animation").header, _section("animation", scope), where, scope)
+    clock = Clock.of(values)
+    if clock.close < clock.open:
+        raise where.child("shutter_close").error(
+            "closes the shutter before it opens", value=values["shutter_close"], allowed="shutter_open or later"
+        )
+    return clock
 
 
 def _film(scope: Scope) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from accuray.scene.clock import STILL, Clock
 from accuray.scene.errors import Document
 from accuray.scene.paths import Confinement
 from accuray.scene.schema import Schema
@@ -19,7 +20,8 @@ class Scope:
     """The document under validation with its schema and folders.
 
     ``defaults`` holds resolved defaults by the identity of their parameter; ``mesh_reports`` collects what the
-    readers of mesh files counted, by the name of the shape; ``images`` keeps the pictures that were read, by file.
+    readers of mesh files counted, by the name of the shape; ``images`` keeps the pictures that were read, by file;
+    ``clock`` is the moment of the frame.
     """
 
     document: Document
@@ -28,6 +30,7 @@ class Scope:
     defaults: dict[int, Any] = field(default_factory=dict)
     mesh_reports: dict[str, dict[str, Any]] = field(default_factory=dict)
     images: dict[Path, Any] = field(default_factory=dict)
+    clock: Clock = STILL
 
     def names(self, section: str) -> list[str]:
         """Names defined in a section ("materials", "spectra", ...), in the order of the file."""

@@ -112,6 +112,7 @@ nb::dict tables() {
   families["material"] = family(TypeList<>{}, params_of<MaterialCommon>());
   families["film"] = family(TypeList<>{}, params_of<FilmCommon>());
   families["render"] = family(TypeList<>{}, params_of<RenderCommon>());
+  families["animation"] = family(TypeList<>{}, params_of<AnimationCommon>());
   nb::dict result;
   result["sampling_version"] = kSamplingVersion;
   result["families"] = families;

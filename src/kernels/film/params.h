@@ -92,4 +92,33 @@ struct RenderCommon {
   }
 };
 
+struct AnimationCommon {
+  static constexpr auto params() {
+    return param_list(Param{.name = "fps",
+                            .kind = Kind::real,
+                            .doc = "Frames per second: frame n lies at the time n / fps.",
+                            .preset = "24",
+                            .low = 1e-6,
+                            .high = 1e9},
+                      Param{.name = "frame",
+                            .kind = Kind::real,
+                            .doc = "Frame that is rendered.",
+                            .preset = "0",
+                            .low = -1e9,
+                            .high = 1e9},
+                      Param{.name = "shutter_open",
+                            .kind = Kind::real,
+                            .doc = "When the shutter opens, from the frame's time on; a quarter of a frame before it.",
+                            .low = -1e9,
+                            .high = 1e9,
+                            .unit = "s"},
+                      Param{.name = "shutter_close",
+                            .kind = Kind::real,
+                            .doc = "When the shutter closes, from the frame's time on; a quarter of a frame after it.",
+                            .low = -1e9,
+                            .high = 1e9,
+                            .unit = "s"});
+  }
+};
+
 }  // namespace accuray
