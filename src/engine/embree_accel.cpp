@@ -105,8 +105,12 @@ RTCGeometry EmbreeScene::make_geometry(uint32_t number) {
   }
   const Mesh& mesh = view_.as<Mesh>(record.shape);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, view_.at(mesh.positions), 0, 12,
-                             mesh.positions.count / 3);
+  rtcSetGeometryTimeStepCount(geometry, mesh.segments + 1);
+  for (uint32_t key = 0; key <= mesh.segments; ++key) {
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key, RTC_FORMAT_FLOAT3, view_.at(mesh.vertices),
+                               key * mesh.floats_per_key() * sizeof(float), mesh.stride * sizeof(float),
+                               mesh.vertex_count);
+  }
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, view_.at(mesh.indices), 0, 12,
                              mesh.indices.count / 3);
   return geometry;

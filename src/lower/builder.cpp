@@ -224,10 +224,13 @@ uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& m
 
 template <class T>
 Slice<T> SceneBuilder::store(std::vector<T> values) {
-  if (values.empty()) return {};
-  const Slice<T> slice{0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(values.size())};
-  bulk_.push_back(section_of(std::move(values)));
-  return slice;
+  return values.empty() ? Slice<T>{} : store<T>(section_of(std::move(values)));
+}
+
+template <class T>
+Slice<T> SceneBuilder::store(Section section) {
+  bulk_.push_back(std::move(section));
+  return {0, static_cast<uint32_t>(bulk_.size()), static_cast<uint32_t>(bulk_.back().size / sizeof(T))};
 }
 
 uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material,
@@ -240,10 +243,8 @@ uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& 
   const LightPlace place = {static_cast<uint32_t>(geometries_.size()), none, 0};
   const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material), place);
   Mesh mesh{};
-  mesh.positions = store(std::move(arrays.positions));
+  mesh.vertices = store<float>(interleave(arrays, mesh));
   mesh.indices = store(std::move(arrays.indices));
-  mesh.normals = store(std::move(arrays.normals));
-  mesh.uvs = store(std::move(arrays.uvs));
   mesh.colors = store(std::move(arrays.colors));
   return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, bounds, prototype);
 }
@@ -310,10 +311,10 @@ uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord&
     return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Disk*>(parameters))), material, place);
   }
   const Mesh& mesh = *reinterpret_cast<const Mesh*>(parameters);
-  const auto* positions = reinterpret_cast<const float*>(bulk_.at(mesh.positions.section - 1).data);
+  const auto* vertices = reinterpret_cast<const float*>(bulk_.at(mesh.vertices.section - 1).data);
   const auto* indices = reinterpret_cast<const uint32_t*>(bulk_.at(mesh.indices.section - 1).data);
   MeshArrays world;
-  world.positions.assign(positions, positions + mesh.positions.count);
+  world.positions = positions_of(mesh, vertices);
   world.indices.assign(indices, indices + mesh.indices.count);
   move_mesh(matrix, world);
   return add_mesh_lights(world, material, place);

@@ -21,17 +21,9 @@
 #include "lower/spectra.h"
 #include "lower/textures.h"
 #include "lower/transform.h"
+#include "lower/vertices.h"
 
 namespace accuray {
-
-// Bulk arrays of a mesh; empty normals, uvs or colors: none.
-struct MeshArrays {
-  std::vector<float> positions;
-  std::vector<uint32_t> indices;
-  std::vector<float> normals;
-  std::vector<float> uvs;
-  std::vector<float> colors;
-};
 
 class SceneBuilder {
  public:
@@ -79,6 +71,8 @@ class SceneBuilder {
   // A bulk array in a section of its own; an empty one stays nowhere.
   template <class T>
   Slice<T> store(std::vector<T> values);
+  template <class T>
+  Slice<T> store(Section section);
   // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
   uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place);
   template <class Shape>

@@ -10,11 +10,16 @@
 namespace accuray {
 
 struct Mesh {
-  Slice<float> positions;   // 3 per vertex, followed by one unused float (Embree reads 16 bytes)
+  Slice<float> vertices;    // of each its position, normal and texture coordinates, as far as there are; see triangle.h
   Slice<uint32_t> indices;  // 3 per triangle
-  Slice<float> normals;     // 3 per vertex, or empty: flat shading
-  Slice<float> uvs;         // 2 per vertex, or empty
   Slice<float> colors;      // 4 per vertex, linear Rec.709 and alpha, or empty
+  uint32_t vertex_count;
+  uint32_t stride;    // floats per vertex
+  uint32_t normal;    // first float of a vertex's normal; 0: flat shading
+  uint32_t uv;        // first of its texture coordinates; 0: none
+  uint32_t segments;  // between the keys of a mesh that deforms, equally long; 0: it does not
+
+  uint64_t floats_per_key() const { return uint64_t{vertex_count} * stride; }
 
   static constexpr const char* name = "mesh";
   static constexpr const char* doc =

@@ -1,7 +1,7 @@
 // From a hit to a point on a surface: position with its error bound, and normals.
 #pragma once
 
-#include "kernels/geometry/shapes.h"
+#include "kernels/geometry/triangle.h"
 #include "kernels/math/rounding.h"
 
 namespace accuray {
@@ -18,28 +18,8 @@ struct Surface {
   Vec3 shading;
   uint32_t material;
   uint32_t light;  // the light that this point belongs to; none: not emissive
+  float time;      // of the ray that met it: 0 where the shutter opens, 1 where it closes
 };
-
-struct Triangle {
-  Vec3 p0, p1, p2;
-  uint32_t i0, i1, i2;
-};
-
-inline Vec3 load_vec3(const float* values, uint32_t index) {
-  const float* v = values + size_t{3} * index;
-  return {v[0], v[1], v[2]};
-}
-
-inline Triangle triangle_of(const SceneView& scene, const Mesh& mesh, uint32_t primitive) {
-  const uint32_t* index = scene.at(mesh.indices) + size_t{3} * primitive;
-  const float* positions = scene.at(mesh.positions);
-  return {load_vec3(positions, index[0]),
-          load_vec3(positions, index[1]),
-          load_vec3(positions, index[2]),
-          index[0],
-          index[1],
-          index[2]};
-}
 
 // Points are interpolated from p0 along the edges, which rounds three times at the magnitude of the coordinates and
 // some times at that of the triangle. The intersector's own test errs in proportion to the triangle's distance from the
@@ -69,7 +49,7 @@ inline Hit inset(Hit hit, float margin) {
 
 // `rounding` is what the point will be rounded by after this, in the mesh's own space.
 inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& met, float rounding, Surface& s) {
-  const Triangle tri = triangle_of(scene, mesh, met.primitive);
+  const Triangle tri = triangle_of(scene, mesh, met.primitive, s.time);
   const Vec3 e1 = tri.p1 - tri.p0;
   const Vec3 e2 = tri.p2 - tri.p0;
   const Vec3 n0 = cross(e1, e2);
@@ -77,14 +57,11 @@ inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& m
   s.error = triangle_error(tri);
   const float extent = max_component(abs(e1)) + max_component(abs(e2));
   const Hit hit = inset(met, min(4.0f * (max_component(s.error) + rounding) * extent / doubled_area, 0.25f));
-  const float w = 1.0f - hit.u - hit.v;
   s.point = fma(hit.u, e1, fma(hit.v, e2, tri.p0));
   s.normal = n0 * (1.0f / doubled_area);
   s.shading = s.normal;
-  if (mesh.normals.count != 0) {
-    const float* normals = scene.at(mesh.normals);
-    const Vec3 n =
-        fma(w, load_vec3(normals, tri.i0), fma(hit.u, load_vec3(normals, tri.i1), load_vec3(normals, tri.i2) * hit.v));
+  if (mesh.normal != 0) {
+    const Vec3 n = vertex_normal(mesh, tri, hit.u, hit.v, s.time);
     const float squared = length_squared(n);
     if (squared > 0.0f && is_finite(squared)) {
       s.shading = n * (1.0f / sqrt(squared));
@@ -135,6 +112,7 @@ inline void to_world(const InstanceRecord& instance, Surface& s) {
 inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
   const GeometryRecord& geometry = scene.geometries[hit.geometry];
   Surface s;
+  s.time = ray.time;
   s.material = geometry.material;
   uint32_t lights = geometry.lights;
   if (hit.instance == none) {

@@ -30,16 +30,15 @@ inline void any_tangents(Vec3 normal, TexturePoint& p) {
   p.dpdv = frame.y;
 }
 
-inline TexturePoint point_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Vec3 normal) {
-  const Triangle tri = triangle_of(scene, mesh, hit.primitive);
+inline TexturePoint point_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Vec3 normal, float time) {
+  const Triangle tri = triangle_of(scene, mesh, hit.primitive, time);
   const Vec3 e1 = tri.p1 - tri.p0;
   const Vec3 e2 = tri.p2 - tri.p0;
-  if (mesh.uvs.count == 0) return {{hit.u, hit.v}, e1, e2};
-  const float* uvs = scene.at(mesh.uvs);
-  const auto uv = [&](uint32_t vertex) { return Vec2{uvs[size_t{2} * vertex], uvs[size_t{2} * vertex + 1]}; };
-  const Vec2 a = uv(tri.i0);
-  const Vec2 b = uv(tri.i1);
-  const Vec2 c = uv(tri.i2);
+  if (mesh.uv == 0) return {{hit.u, hit.v}, e1, e2};
+  const auto uv = [&](const float* vertex) { return Vec2{vertex[mesh.uv], vertex[mesh.uv + 1]}; };
+  const Vec2 a = uv(tri.v0);
+  const Vec2 b = uv(tri.v1);
+  const Vec2 c = uv(tri.v2);
   const Vec2 ab = {b.x - a.x, b.y - a.y};
   const Vec2 ac = {c.x - a.x, c.y - a.y};
   TexturePoint p;
@@ -85,7 +84,7 @@ inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const 
   if (shape.tag == tag_of<Mesh>(Shapes{})) {
     Vec3 normal = surface.normal;
     if (instanced) normal = normalize(scene.instances[hit.instance].to_object.vector(normal));
-    p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal);
+    p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal, surface.time);
   } else if (shape.tag == tag_of<Sphere>(Shapes{})) {
     const Sphere& sphere = scene.as<Sphere>(shape);
     p = point_on_sphere(normalize(point - sphere.center), sphere.radius);

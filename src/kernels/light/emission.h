@@ -27,11 +27,11 @@ inline Hit hit_on_light(const SceneView& scene, uint32_t light, Vec3 point) {
   if (shape.tag != tag_of<Mesh>(Shapes{})) return hit;
   const Mesh& mesh = scene.as<Mesh>(shape);
   if (place.instance != none) point = scene.instances[place.instance].to_object.point(point);
-  Vec2 b = barycentric(triangle_of(scene, mesh, hit.primitive), point);
+  Vec2 b = barycentric(triangle_of(scene, mesh, hit.primitive, 0.0f), point);
   const bool outside = min(b.x, min(b.y, 1.0f - b.x - b.y)) < 0.0f;
   if (outside && scene.lights[light].light.tag == tag_of<QuadLight>(Lights{})) {
     ++hit.primitive;
-    b = barycentric(triangle_of(scene, mesh, hit.primitive), point);
+    b = barycentric(triangle_of(scene, mesh, hit.primitive, 0.0f), point);
   }
   hit.u = b.x;
   hit.v = b.y;
