@@ -41,8 +41,8 @@ def lower(scene: Scene) -> tuple[Any, dict[str, MeshReport]]:
 class Triangles(NamedTuple):
     """The triangles that a shape is rendered as, before its transform: front sides run counter-clockwise.
 
-    positions: float32 (N, 3), metres. faces: uint32 (M, 3), indices of positions. normals: float32 (N, 3), unit, or
-    None for flat shading. uvs: float32 (N, 2), or None. colors: float32 (N, 4), linear Rec.709 and alpha, or None.
+    positions: float32 (N, 3), metres; (K, N, 3) for K forms at equal steps while the shutter is open. faces: uint32 (M, 3), indices of positions. normals: float32 (N, 3)
+    or (K, N, 3), unit, or None for flat shading. uvs: float32 (N, 2), or None. colors: float32 (N, 4), linear Rec.709 and alpha, or None.
     """
 
     positions: NDArray[np.float32]
@@ -195,7 +195,12 @@ class _Lowering:
             mesh = self.triangles(name, table)
             if not self._reads_colors:
                 mesh = mesh._replace(colors=None)
-            number = self.builder.add_mesh(*mesh, transform, material, table["prototype"])
+            segments = 0 if mesh.positions.ndim == 2 else len(mesh.positions) - 1
+            rows = mesh._replace(
+                positions=mesh.positions.reshape(-1, 3),
+                normals=None if mesh.normals is None else np.ascontiguousarray(mesh.normals).reshape(-1, 3),
+            )
+            number = self.builder.add_mesh(*rows, transform, material, table["prototype"], segments)
         else:
             values = self._values("shape", table)
             number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
@@ -217,6 +222,8 @@ class _Lowering:
         positions, faces, normals, uvs, colors = (
             table[key] for key in ("positions", "faces", "normals", "uvs", "colors")
         )
+        if positions.ndim == 3:
+            return self._deforming_mesh(table)
         if table["file"] is None:
             mesh = core.repair(positions, faces, normals, uvs, colors)
             positions, faces, normals, uvs = mesh.positions, mesh.indices, mesh.normals, mesh.uvs
@@ -232,6 +239,20 @@ class _Lowering:
         elif table["shading"] == "smooth" and normals is None:
             normals = core.smooth_normals(positions, faces)
         return Triangles(positions, faces, normals, uvs, colors)
+
+    @staticmethod
+    def _deforming_mesh(table: Values) -> Triangles:
+        """A mesh of several forms, with a form of its normals for each; what moves is not repaired."""
+        from accuray._core import mesh as core
+
+        positions, faces, normals = table["positions"], table["faces"], table["normals"]
+        if table["shading"] == "flat":
+            normals = None
+        elif table["shading"] == "smooth" and normals is None:
+            normals = np.stack([core.smooth_normals(form, faces) for form in positions])
+        elif normals is not None and normals.ndim == 2:
+            normals = np.broadcast_to(normals, positions.shape)
+        return Triangles(positions, faces, normals, table["uvs"], table["colors"])
 
     def _spectrum(self, spectrum: Spectrum) -> Any:
         """The builder's reference to a spectrum; equal spectra share one."""

@@ -50,7 +50,7 @@ def check_together(type_: Type, values: dict[str, Any], where: Where) -> None:
     for param in params:
         if param.role in (FACES, "pixels"):
             continue
-        letter, rows = param.role[0], len(values[param.name])
+        letter, rows = param.role[0], values[param.name].shape[-2]
         first, expected = counts.setdefault(letter, (param.name, rows))
         if rows != expected:
             raise where.child(param.name).error(f"has {rows} rows", allowed=f"{expected}, as many as {first}")
@@ -81,8 +81,8 @@ def _rows(param: Param, value: Any, where: Where) -> FloatArray:
             raise where.error(f"is an array of {value.dtype}", allowed="an array of floating-point numbers")
         array, width = value.astype(np.float64), value.shape[-1] if value.ndim == 2 else 0
     else:
-        width = len(value[0]) if value and hasattr(value, "__getitem__") and hasattr(value[0], "__len__") else widths[0]
-        width = width if width in widths else widths[0]
+        rows = value if isinstance(value, (list, tuple)) else ()
+        width = len(rows[0]) if rows and hasattr(rows[0], "__len__") and len(rows[0]) in widths else widths[0]
         _check_rows(value, width, where, shape)
         try:
             array = np.array(value, dtype=np.float64).reshape(-1, width)

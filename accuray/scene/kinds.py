@@ -8,11 +8,15 @@ Spectrum, Path; pictures (height, width, channels); TextureUse for what a textur
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 from accuray.scene.arrays import parse_array
+from accuray.scene.deformation import keyed_files, resolve_moving
 from accuray.scene.errors import Where
 from accuray.scene.images import parse_pixels
+from accuray.scene.keys import is_keyed
 from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
 from accuray.scene.schema import Param
 from accuray.scene.scope import SECTION_OF, Scope
@@ -95,14 +99,21 @@ def _text(param: Param, value: Any, where: Where, _scope: Scope) -> str:
 
 
 def _file(param: Param, value: Any, where: Where, scope: Scope) -> Any:
-    return scope.files.resolve(value, where, param.choices)
+    def resolve(name: Any, place: Where) -> Path:
+        return scope.files.resolve(name, place, param.choices)
+
+    if is_keyed(value) and param.animatable:
+        return keyed_files(value, where, resolve)
+    return resolve(value, where)
 
 
 def _transform(_param: Param, value: Any, where: Where, _scope: Scope) -> Any:
     return parse_transform(value, where)
 
 
-def _array(param: Param, value: Any, where: Where, _scope: Scope) -> Any:
+def _array(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    if is_keyed(value) and param.animatable:
+        return resolve_moving(value, where, scope, partial(parse_array, param))
     return parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
 
 

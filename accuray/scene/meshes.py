@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from accuray.scene.arrays import scale_to_metres
+from accuray.scene.deformation import KeyedFiles, arrays_over_shutter
 from accuray.scene.errors import Where
 from accuray.scene.readers import Readers
 from accuray.scene.schema import Type
+from accuray.scene.scope import Scope
 
 MeshReader = Callable[[Path], dict[str, Any]]
 """Reads a file into arrays by the names of the parameters: positions float32 (N, 3), faces uint32 (M, 3), and each or
@@ -24,12 +26,14 @@ _readers: Readers[dict[str, Any]] = Readers()
 register_reader = _readers.register
 
 
-def fill_from_file(type_: Type, values: dict[str, Any], path: Path, where: Where) -> dict[str, Any]:
-    """Read ``path`` into the array parameters of ``type_`` and return the reader's report.
+def fill_from_file(
+    type_: Type, values: dict[str, Any], file: Path | KeyedFiles, where: Where, scope: Scope
+) -> dict[str, Any]:
+    """Read a file, or one for each key, into the array parameters of ``type_`` and return the first reader's report.
 
     Coordinates in the file are in the length unit of the scene file that names it.
     """
-    arrays = _readers.read(path, where)
+    arrays = _readers.read(file, where) if isinstance(file, Path) else arrays_over_shutter(file, _readers.read, scope)
     for param in type_.params:
         if param.kind == "array" and arrays.get(param.name) is not None:
             array = arrays[param.name]

@@ -13,6 +13,7 @@ from accuray.scene import openpbr
 from accuray.scene import schema as schemas
 from accuray.scene.clock import STILL, Clock
 from accuray.scene.composition import check_parts
+from accuray.scene.deformation import check_deforming
 from accuray.scene.environments import check_environments
 from accuray.scene.errors import Document, Source, Where
 from accuray.scene.exposure import resolve_exposure
@@ -117,6 +118,7 @@ def build(
     check_opacity(materials, top)
     check_bumps(textures, materials, schema, top)
     check_vertices(textures, materials, shapes, schema, top)
+    check_deforming(shapes, materials, top.child("shapes"))
     _check_spectra(scope)
     camera = _single("camera", data, top.child("camera"), scope)
     film["exposure"] = resolve_exposure(film, camera, top.child("film"))

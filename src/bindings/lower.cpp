@@ -31,13 +31,14 @@ using OptionalMatrix = std::optional<Matrix>;
 
 MeshArrays to_arrays(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
                      const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
-                     const std::optional<Rows<float, 4>>& colors) {
-  const size_t vertices = positions.shape(0);
-  if ((normals && normals->shape(0) != vertices) || (uvs && uvs->shape(0) != vertices) ||
+                     const std::optional<Rows<float, 4>>& colors, uint32_t segments) {
+  const size_t rows = positions.shape(0);
+  const size_t vertices = rows / (size_t{segments} + 1);
+  if (vertices * (size_t{segments} + 1) != rows || (normals && normals->shape(0) != rows) || (uvs && uvs->shape(0) != vertices) ||
       (colors && colors->shape(0) != vertices)) {
     throw std::invalid_argument("normals, uvs and colors need one row for each position");
   }
-  MeshArrays arrays{to_vector(positions), to_vector(indices), {}, {}, {}};
+  MeshArrays arrays{to_vector(positions), to_vector(indices), {}, {}, {}, segments};
   for (const uint32_t index : arrays.indices) {
     if (index >= vertices)
       throw std::invalid_argument("a face names vertex " + std::to_string(index) + " of " + std::to_string(vertices));
@@ -188,11 +189,12 @@ void bind_surfaces(nb::class_<SceneBuilder>& builder) {
           [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
              const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
              const std::optional<Rows<float, 4>>& colors, const OptionalMatrix& transform, uint32_t material,
-             bool prototype) {
-            return b.add_mesh(to_arrays(positions, indices, normals, uvs, colors), transform, material, prototype);
+             bool prototype, uint32_t segments) {
+            MeshArrays arrays = to_arrays(positions, indices, normals, uvs, colors, segments);
+            return b.add_mesh(std::move(arrays), transform, material, prototype);
           },
           "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(), "transform"_a.none(),
-          "material"_a, "prototype"_a)
+          "material"_a, "prototype"_a, "segments"_a = 0)
       .def(
           "add_shape",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, const OptionalMatrix& transform,
