@@ -41,8 +41,9 @@ def lower(scene: Scene) -> tuple[Any, dict[str, MeshReport]]:
 class Triangles(NamedTuple):
     """The triangles that a shape is rendered as, before its transform: front sides run counter-clockwise.
 
-    positions: float32 (N, 3), metres; (K, N, 3) for K forms at equal steps while the shutter is open. faces: uint32 (M, 3), indices of positions. normals: float32 (N, 3)
-    or (K, N, 3), unit, or None for flat shading. uvs: float32 (N, 2), or None. colors: float32 (N, 4), linear Rec.709 and alpha, or None.
+    positions: float32 (N, 3), metres; (K, N, 3) for K forms at equal steps while the shutter is open. faces: uint32
+    (M, 3), indices of positions. normals: float32 like positions, unit, or None for flat shading. uvs: float32 (N, 2),
+    or None. colors: float32 (N, 4), linear Rec.709 and alpha, or None.
     """
 
     positions: NDArray[np.float32]

@@ -70,7 +70,7 @@ def over_shutter(times: list[float], forms: Forms, scope: Scope, where: Where) -
     return _frozen(best)
 
 
-def resolve_moving(value: Any, where: Where, scope: Scope, one: Callable[[Any, Where], Forms]) -> Forms:
+def resolve_moving(value: Any, where: Where, scope: Scope, one: Callable[[Any, Where], Any]) -> Forms:
     """A keyed array of a mesh over the shutter; ``one`` resolves the array of one key. Raises SceneError."""
     import numpy as np
 
@@ -149,10 +149,10 @@ def _form_at(times: list[float], forms: Forms, time: float) -> Forms:
     import numpy as np
 
     span = span_at(times, "linear", time)
-    if span.along == 0.0:
-        return forms[span.before]
-    first, last = forms[span.before].astype(np.float64), forms[span.after].astype(np.float64)
-    form: Forms = (first + (last - first) * span.along).astype(np.float32)
+    form: Forms = forms[span.before]
+    if span.along > 0.0:
+        first, last = form.astype(np.float64), forms[span.after].astype(np.float64)
+        form = (first + (last - first) * span.along).astype(np.float32)
     return form
 
 
@@ -172,6 +172,6 @@ def _frozen(forms: Forms) -> Forms:
     """Contiguous, and no longer writable: a scene's identity must not change under it."""
     import numpy as np
 
-    forms = np.ascontiguousarray(forms)
-    forms.flags.writeable = False
-    return forms
+    frozen: Forms = np.ascontiguousarray(forms)
+    frozen.flags.writeable = False
+    return frozen

@@ -75,7 +75,7 @@ def test_a_bar_that_only_widens_covers_its_mean():
 def test_packed_and_embree_scenes_agree():
     """A deforming mesh beside one of many triangles: both are traced by Embree; without the latter so too."""
     rng = np.random.default_rng(1)
-    away = (rng.random((300, 3)) + [50, 50, 50]).astype(np.float32)
+    away = (50.0 + rng.random((300, 3))).astype(np.float32)
     crowd = {"type": "mesh", "positions": away, "faces": np.arange(300).reshape(-1, 3), "material": "black"}
     alone = picture({"bar": moving(bar(-0.6), bar(0.4))})
     beside = picture({"bar": moving(bar(-0.6), bar(0.4)), "crowd": crowd})
