@@ -1,6 +1,7 @@
 // From a hit to a point on a surface: position with its error bound, and normals.
 #pragma once
 
+#include "kernels/geometry/motion.h"
 #include "kernels/geometry/shapes.h"
 #include "kernels/math/rounding.h"
 
@@ -131,6 +132,34 @@ inline void to_world(const InstanceRecord& instance, Surface& s) {
   s.shading = normalize(m.vector(s.shading));
 }
 
+inline void place_on_still(const SceneView& scene, const InstanceRecord& instance, const Ray& ray, const Hit& hit,
+                           Surface& s) {
+  Ray local = ray;
+  local.origin = instance.to_object.point(ray.origin);
+  local.direction = instance.to_object.vector(ray.direction);
+  const Transform& m = instance.to_world;
+  const float scale = length({m.m[0][0], m.m[1][0], m.m[2][0]});
+  const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, local.direction, local.origin))) / scale;
+  place_on_shape(scene, scene.geometries[hit.geometry], local, hit, rounding, s);
+  to_world(instance, s);
+}
+
+// On an instance that moves: position, error and normals. Never inlined: still scenes do not pay for it.
+ACCURAY_NOINLINE inline Surface place_on_moving(const SceneView& scene, Ray ray, Hit hit) {
+  const Placement at = placement(scene, scene.instances[hit.instance].motion, ray.time);
+  ray.origin = at.to_object.point(ray.origin);
+  ray.direction = at.to_object.vector(ray.direction);
+  const Vec3 about = fma(hit.t, ray.direction, ray.origin);
+  const Vec3 rounding = at.to_object.spread(at.size.magnitude(about) * gamma(placement_roundings));
+  Surface s;
+  place_on_shape(scene, scene.geometries[hit.geometry], ray, hit, max_component(rounding), s);
+  s.error = at.to_world.spread(s.error) + at.size.magnitude(s.point) * gamma(placement_roundings);
+  s.point = at.to_world.point(s.point);
+  s.normal = normal_by(at.to_object, s.normal);
+  s.shading = normal_by(at.to_object, s.shading);
+  return s;
+}
+
 // `hit` must have met something.
 inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
   const GeometryRecord& geometry = scene.geometries[hit.geometry];
@@ -141,14 +170,12 @@ inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit
     place_on_shape(scene, geometry, ray, hit, 0.0f, s);
   } else {
     const InstanceRecord& instance = scene.instances[hit.instance];
-    Ray local = ray;
-    local.origin = instance.to_object.point(ray.origin);
-    local.direction = instance.to_object.vector(ray.direction);
-    const Transform& m = instance.to_world;
-    const float scale = length({m.m[0][0], m.m[1][0], m.m[2][0]});
-    const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, local.direction, local.origin))) / scale;
-    place_on_shape(scene, geometry, local, hit, rounding, s);
-    to_world(instance, s);
+    if (instance.motion != none) [[unlikely]] {
+      s = place_on_moving(scene, ray, hit);
+      s.material = geometry.material;
+    } else {
+      place_on_still(scene, instance, ray, hit, s);
+    }
     if (instance.material != none) s.material = instance.material;
     lights = instance.lights == none ? none : scene.lights_of_instance[instance.lights + hit.geometry - instance.first];
   }
