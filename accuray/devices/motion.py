@@ -58,6 +58,13 @@ MOST_OF_SIZE = 1e-2
 """Error, over the size of the body, from which a motion of 128 segments is refused."""
 
 
+MOST_DEGREES = 45.0
+"""Turn of a segment, at most: beyond, the middle of one may be right by chance."""
+
+PARTS = (0.5, 0.5 * (3.0 - math.sqrt(5.0)))
+"""Where a segment is compared with the true motion: in the middle, where it errs most, and somewhere else."""
+
+
 class Keys(NamedTuple):
     """``rows`` (K, 12): the upper three rows of each key. ``error``: 0, or what is too much of the body's size."""
 
@@ -175,12 +182,12 @@ def camera_keys(motion: Motion, position: tuple[float, ...], eye: Eye) -> Keys:
 
 def _segmented(motion: Motion, error: Any, allowed: float) -> tuple[Array, float]:
     """The matrices (K, 4, 4) of the fewest segments whose error is allowed, else of the most, and the error."""
-    floor = 0.0
+    floor = motion.degrees / MOST_DEGREES
     for count in COUNTS:
         if count < floor and count != COUNTS[-1]:
             continue
         keys = np.array([motion.at(k / count) for k in range(count + 1)])
-        shares = [(k + 0.5) / count for k in range(count)] + list(motion.bends)
+        shares = [(k + part) / count for k in range(count) for part in PARTS] + list(motion.bends)
         true = np.array([motion.at(share) for share in shares])
         worst = error(true, between_keys(keys, np.array(shares)))
         if worst <= allowed:

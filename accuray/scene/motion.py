@@ -104,6 +104,11 @@ class Motion:
         length = self.close - self.open
         return tuple((time - self.open) / length for time in self.times if self.open < time < self.close)
 
+    @cached_property
+    def degrees(self) -> float:
+        """How far it turns in all, at most."""
+        return sum(_angle_between(a, b) for a, b in pairwise(self.poses))
+
     def numbers(self) -> tuple[Any, ...]:
         """Every number that the motion is made of, for the identity of a scene."""
         return (self.open, self.close, self.times, self.poses)
@@ -132,6 +137,12 @@ def _turned(a: Pose, b: Pose, share: float) -> Rows:
         return rotation_about(axis, (1.0 - share) * first + share * second)
     about, degrees = rotations.way(a.turn, b.turn)
     return product(a.turned, rotation_about(about, share * degrees))
+
+
+def _angle_between(a: Pose, b: Pose) -> float:
+    axis = a.axis if a.axis is not None else b.axis
+    first, second = _degrees_about(axis, a), _degrees_about(axis, b)
+    return rotations.way(a.turn, b.turn)[1] if first is None or second is None else abs(second - first)
 
 
 def _degrees_about(axis: Vector | None, pose: Pose) -> float | None:

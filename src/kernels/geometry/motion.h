@@ -14,7 +14,6 @@ namespace accuray {
 struct Placement {
   Transform to_world;
   Transform to_object;
-  Transform size;  // magnitudes of what to_world was summed from: what its rounding is proportional to
   float determinant;
 };
 
@@ -42,7 +41,7 @@ struct Moment {
   const Transform* second;
   float share;
 };
-inline Moment moment(const SceneView& scene, uint32_t motion, float time) {
+inline Moment moment_of(const SceneView& scene, uint32_t motion, float time) {
   const MotionRecord& record = scene.motions[motion];
   const uint32_t segments = record.count - 1;
   const float scaled = time * static_cast<float>(segments);
@@ -62,17 +61,16 @@ inline Transform transform_at(const Moment& at) {
   return t;
 }
 
-inline Placement placement(const SceneView& scene, uint32_t motion, float time) {
-  const Moment at = moment(scene, motion, time);
+inline Placement placement(const Moment& at) {
   Placement p;
   p.to_world = transform_at(at);
   p.to_object = inverse_of(p.to_world, p.determinant);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      p.size.m[row][column] = max(abs(at.first->m[row][column]), abs(at.second->m[row][column]));
-    }
-  }
   return p;
+}
+
+// A bound of what rounds on a point's way into the world: in proportion to all that is summed, of both keys.
+inline Vec3 rounding_at(const Moment& at, Vec3 point) {
+  return max(at.first->magnitude(point), at.second->magnitude(point)) * gamma(placement_roundings);
 }
 
 // A normal under the inverse of a transform, transposed; of unit length.
@@ -83,9 +81,9 @@ inline Vec3 normal_by(const Transform& inverse, Vec3 n) {
                     fma(m[0][2], n.x, fma(m[1][2], n.y, m[2][2] * n.z))});
 }
 
-// A ray in the space of a moving instance's prototypes. Never inlined, like all that only moving things need.
-ACCURAY_NOINLINE inline Ray into_moving(const SceneView& scene, uint32_t motion, Ray ray) {
-  const Moment at = moment(scene, motion, ray.time);
+// A ray in the space of a moving instance's prototypes.
+inline Ray into_moving(const SceneView& scene, uint32_t motion, Ray ray) {
+  const Moment at = moment_of(scene, motion, ray.time);
   float determinant;
   const Transform to_object = inverse_of(transform_at(at), determinant);
   ray.origin = to_object.point(ray.origin);
@@ -95,7 +93,7 @@ ACCURAY_NOINLINE inline Ray into_moving(const SceneView& scene, uint32_t motion,
 
 // A ray of a camera that moves, given where the camera stands without its motion.
 ACCURAY_NOINLINE inline Ray carried_by(const SceneView& scene, uint32_t motion, Ray ray) {
-  const Transform to_world = transform_at(moment(scene, motion, ray.time));
+  const Transform to_world = transform_at(moment_of(scene, motion, ray.time));
   ray.origin = to_world.point(ray.origin);
   ray.direction = normalize(to_world.vector(ray.direction));
   return ray;

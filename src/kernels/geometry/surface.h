@@ -146,14 +146,14 @@ inline void place_on_still(const SceneView& scene, const InstanceRecord& instanc
 
 // On an instance that moves: position, error and normals. Never inlined: still scenes do not pay for it.
 ACCURAY_NOINLINE inline Surface place_on_moving(const SceneView& scene, Ray ray, Hit hit) {
-  const Placement at = placement(scene, scene.instances[hit.instance].motion, ray.time);
+  const Moment moment = moment_of(scene, scene.instances[hit.instance].motion, ray.time);
+  const Placement at = placement(moment);
   ray.origin = at.to_object.point(ray.origin);
   ray.direction = at.to_object.vector(ray.direction);
-  const Vec3 about = fma(hit.t, ray.direction, ray.origin);
-  const Vec3 rounding = at.to_object.spread(at.size.magnitude(about) * gamma(placement_roundings));
+  const Vec3 rounding = at.to_object.spread(rounding_at(moment, fma(hit.t, ray.direction, ray.origin)));
   Surface s;
   place_on_shape(scene, scene.geometries[hit.geometry], ray, hit, max_component(rounding), s);
-  s.error = at.to_world.spread(s.error) + at.size.magnitude(s.point) * gamma(placement_roundings);
+  s.error = at.to_world.spread(s.error) + rounding_at(moment, s.point);
   s.point = at.to_world.point(s.point);
   s.normal = normal_by(at.to_object, s.normal);
   s.shading = normal_by(at.to_object, s.shading);

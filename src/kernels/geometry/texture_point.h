@@ -105,7 +105,7 @@ inline TexturePoint point_on_shape(const SceneView& scene, const Hit& hit, Vec3 
 
 ACCURAY_NOINLINE inline TexturePoint point_on_moving(const SceneView& scene, Hit hit, Vec3 point, Vec3 normal,
                                                      float time) {
-  const Placement at = placement(scene, scene.instances[hit.instance].motion, time);
+  const Placement at = placement(moment_of(scene, scene.instances[hit.instance].motion, time));
   TexturePoint p = point_on_shape(scene, hit, at.to_object.point(point), normal_by(at.to_world, normal));
   p.dpdu = at.to_world.vector(p.dpdu);
   p.dpdv = at.to_world.vector(p.dpdv);

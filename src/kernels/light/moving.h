@@ -29,7 +29,8 @@ inline float density_carried(float pdf, float stretch, float determinant) {
 
 ACCURAY_NOINLINE inline LightSample sample_moving(const SceneView& scene, const LightRecord& record, Vec3 reference,
                                                   float time, Vec2 u) {
-  const Placement at = placement(scene, record.motion, time);
+  const Moment moment = moment_of(scene, record.motion, time);
+  const Placement at = placement(moment);
   const Vec3 from = at.to_object.point(reference);
   LightSample s =
       with_surface_light(scene, record.light, no_light(), [&](const auto& light) { return light.sample(from, u); });
@@ -37,7 +38,7 @@ ACCURAY_NOINLINE inline LightSample sample_moving(const SceneView& scene, const 
   const Vec3 way = at.to_world.vector(s.wi);
   const float stretch = length(way);
   s.wi = way * (1.0f / stretch);
-  s.error = at.to_world.spread(s.error) + at.size.magnitude(s.point) * gamma(placement_roundings);
+  s.error = at.to_world.spread(s.error) + rounding_at(moment, s.point);
   s.point = at.to_world.point(s.point);
   s.normal = normal_by(at.to_object, s.normal);
   s.distance *= stretch;
@@ -45,15 +46,16 @@ ACCURAY_NOINLINE inline LightSample sample_moving(const SceneView& scene, const 
   return s;
 }
 
+// `point` and `normal`: where the way meets the light.
 ACCURAY_NOINLINE inline float moving_pdf(const SceneView& scene, const LightRecord& record, Vec3 reference, float time,
-                                         Vec3 wi, Surface met) {
-  const Placement at = placement(scene, record.motion, time);
+                                         Vec3 wi, Vec3 point, Vec3 normal) {
+  const Placement at = placement(moment_of(scene, record.motion, time));
   const Vec3 from = at.to_object.point(reference);
   const Vec3 way = at.to_object.vector(wi);
   const float shrink = length(way);
-  met.point = at.to_object.point(met.point);
-  // Normals go back by the transform itself, transposed.
-  met.normal = normal_by(at.to_world, met.normal);
+  Surface met{};
+  met.point = at.to_object.point(point);
+  met.normal = normal_by(at.to_world, normal);  // normals go back by the transform itself, transposed
   const float pdf = with_surface_light(scene, record.light, 0.0f,
                                        [&](const auto& light) { return light.pdf(from, way * (1.0f / shrink), met); });
   return density_carried(pdf, 1.0f / shrink, at.determinant);

@@ -99,7 +99,7 @@ inline LightSample sample_light(const SceneView& scene, uint32_t light, Vec3 ref
 inline float light_pdf(const SceneView& scene, uint32_t light, Vec3 reference, float time, Vec3 wi, const Surface& at) {
   const LightRecord& record = scene.lights[light];
   if (record.motion != none) [[unlikely]]
-    return moving_pdf(scene, record, reference, time, wi, at);
+    return moving_pdf(scene, record, reference, time, wi, at.point, at.normal);
   return dispatch(Lights{}, record.light.tag, [&](auto type) {
     const auto& met = scene.as<typename decltype(type)::type>(record.light);
     if constexpr (requires { met.pdf(scene, reference, wi, at); }) {
