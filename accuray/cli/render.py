@@ -193,6 +193,8 @@ def defects(image: accuray.Image) -> Iterator[str]:
         losses = [f"{report[key]} {what}" for key, what in LOSSES.items() if report.get(key)]
         if losses:
             yield f"shapes.{shape}: left out {', '.join(losses)}"
+        if "motion_error" in report:
+            yield f"shapes.{shape}: moves so far that its blur is up to {report['motion_error']:.2g} of its size off"
     if image.film.dropped_total:
         yield f"{image.film.dropped_total} samples were not finite and were left out"
 

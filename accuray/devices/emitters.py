@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from accuray.scene import Spectrum
 from accuray.scene.amounts import folded, lumens_per_y
+from accuray.scene.motion import Motion, matrices_of
 from accuray.scene.photometry import ROLE
 from accuray.scene.spectrum import xyz
 
@@ -81,7 +82,7 @@ def _areas_with(material: str, shapes: dict[str, Values], meshed: Meshed) -> lis
     areas = []
     for name, shape in shapes.items():
         if shape["type"] == "instance":
-            scale = _area_scale(shape["transform"])
+            scale = _area_scale(shape["transform"], material)
             shown = {member: shape["material"] or shapes[member]["material"] for member in shape["of"]}
             areas += [scale * _area(m, shapes[m], meshed) for m in shape["of"] if shown[m] == material]
         elif shape["material"] == material and not shape["prototype"]:
@@ -89,13 +90,21 @@ def _areas_with(material: str, shapes: dict[str, Values], meshed: Meshed) -> lis
     return areas or [1.0]
 
 
-def _area_scale(transform: NDArray[np.float64] | None) -> float:
-    """Factor of areas under a similarity."""
-    return 1.0 if transform is None else float(abs(np.linalg.det(transform[:3, :3])) ** (2.0 / 3.0))
+def _area_scale(transform: NDArray[np.float64] | Motion | None, material: str) -> float:
+    """Factor of areas under a similarity. Raises ValueError(problem, key) for a motion that changes it."""
+    if transform is None:
+        return 1.0
+    factors = [float(abs(np.linalg.det(m[:3, :3])) ** (2.0 / 3.0)) for m in matrices_of(transform)]
+    if max(factors) > (1.0 + SAME_AREA) * min(factors):
+        raise ValueError(
+            "is a flux for a surface whose size changes while the shutter is open: allowed is a radiance",
+            f"{material}.emission",
+        )
+    return factors[0]
 
 
 def _area(name: str, shape: Values, meshed: Meshed) -> float:
-    scale = _area_scale(shape["transform"])
+    scale = _area_scale(shape["transform"], shape["material"])
     if shape["type"] == "sphere":
         return float(scale * 4.0 * pi * shape["radius"] ** 2)
     if shape["type"] == "disk":

@@ -16,9 +16,11 @@ from accuray import data
 from accuray.devices.emitters import spread_emissions
 from accuray.devices.lights import LightLowering, matrix
 from accuray.devices.materials import MaterialLowering
+from accuray.devices.motion import MOST_OF_SIZE, Eye, Keys, body_keys, camera_keys, moved, shape_box
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
+from accuray.scene.motion import Motion
 from accuray.scene.spectrum import interpolate
 from accuray.scene.textures import CHANNELS, TextureUse
 from accuray.scene.transforms import sine_cosine
@@ -88,6 +90,9 @@ class _Lowering:
         self.textures: dict[str, int] = {}
         self.materials: dict[str, int] = {}
         self.reports: dict[str, MeshReport] = dict(scene.mesh_reports)
+        self._eye = Eye(scene.camera, scene.film)
+        self._boxes: dict[str, NDArray[np.float64]] = {}
+        self._moves = False
 
     def block(self) -> Any:
         """Adds everything in a fixed order and finishes the block."""
@@ -103,8 +108,9 @@ class _Lowering:
         for name, light in self.scene.lights.items():
             self._guard(f"lights.{name}", partial(lights.add, light))
         camera, pixel_filter, integrator = self.scene.camera, self.scene.filter, self.scene.integrator
-        values = self._values("camera", camera)
-        self._guard("camera", partial(builder.set_camera, camera["type"], values, film["width"], film["height"]))
+        self._guard("camera", partial(self._set_camera, camera))
+        if self._moves and self.scene.clock.shutter:
+            builder.set_shutter(*np.array(self.scene.clock.shutter, dtype=np.float64).T.copy())
         builder.set_filter(pixel_filter["type"], self._values("filter", pixel_filter))
         builder.set_integrator(integrator["type"], self._values("integrator", integrator))
         builder.set_film(film["unit"], film["hide_environment"])
@@ -171,12 +177,22 @@ class _Lowering:
         return self.builder.textured_reflectance(texture, use.scale)
 
     def _add_shapes(self) -> None:
-        """First what the scene shows itself, then the prototypes, group by group, with their instances."""
+        """First what the scene shows itself and is still, then the prototypes with their instances.
+
+        What moves is an instance of itself. Prototypes come group by group.
+        """
         instances = {name: table for name, table in self.scene.shapes.items() if table["type"] == "instance"}
         others = {name: table for name, table in self.scene.shapes.items() if name not in instances}
-        for name, table in others.items():
-            if not table["prototype"]:
+        shown = {name: table for name, table in others.items() if not table["prototype"]}
+        moving = [name for name, table in shown.items() if isinstance(table["transform"], Motion)]
+        for name, table in shown.items():
+            if name not in moving:
                 self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
+        for name in moving:
+            table = {**others[name], "transform": None, "prototype": True}
+            number = self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
+            place = partial(self._add_instance, name, number, [name], others[name]["transform"], None)
+            self._guard(f"shapes.{name}", place)
         groups: dict[tuple[str, ...], int] = {}
         for name, table in instances.items():
             members = tuple(table["of"])
@@ -184,10 +200,44 @@ class _Lowering:
                 numbers = [self._guard(f"shapes.{m}", partial(self._add_shape, m, others[m])) for m in members]
                 groups[members] = numbers[0]
             material = None if table["material"] is None else self.materials[table["material"]]
-            add = partial(
-                self.builder.add_instance, groups[members], len(members), matrix(table["transform"]), material
+            place = partial(self._add_instance, name, groups[members], list(members), table["transform"], material)
+            self._guard(f"shapes.{name}", place)
+
+    def _add_instance(self, name: str, first: int, members: list[str], transform: Any, material: int | None) -> None:
+        if not isinstance(transform, Motion):
+            self.builder.add_instance(first, len(members), matrix(transform), material)
+            return
+        boxes = np.array([self._boxes[member] for member in members])
+        keys = body_keys(transform, np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)]), self._eye)
+        self._check_error(keys)
+        if keys.error > 0.0:
+            self.reports[name] = {**self.reports.get(name, {}), "motion_error": keys.error}
+        self.builder.add_moving_instance(first, len(members), keys.rows, material)
+        self._moves = True
+
+    def _check_error(self, keys: Keys) -> None:
+        if keys.error > MOST_OF_SIZE:
+            raise ValueError(
+                f"turns so far while the shutter is open that {len(keys.rows) - 1} straight segments miss it by "
+                f"{keys.error:.3g} of its size: allowed up to {MOST_OF_SIZE:g}",
+                "transform",
             )
-            self._guard(f"shapes.{name}", add)
+
+    def _set_camera(self, camera: Values) -> None:
+        """A transform that holds still goes into the camera's own vectors."""
+        transform = camera["transform"]
+        if transform is not None and not isinstance(transform, Motion):
+            points = np.array([camera["position"], camera["look_at"], camera["up"]], dtype=np.float64)
+            position, look_at, up = moved(transform[None], points)[0]
+            axes = {"position": position, "look_at": look_at, "up": up - transform[:3, 3]}
+            camera = {**camera, **{name: tuple(map(float, vector)) for name, vector in axes.items()}}
+        film = self.scene.film
+        self.builder.set_camera(camera["type"], self._values("camera", camera), film["width"], film["height"])
+        if isinstance(transform, Motion):
+            keys = camera_keys(transform, camera["position"], self._eye)
+            self._check_error(keys)
+            self.builder.set_camera_motion(keys.rows)
+            self._moves = True
 
     def _add_shape(self, name: str, table: Values) -> int:
         material, transform = self.materials[table["material"]], matrix(table["transform"])
@@ -197,14 +247,19 @@ class _Lowering:
             if not self._reads_colors:
                 mesh = mesh._replace(colors=None)
             segments = 0 if mesh.positions.ndim == 2 else len(mesh.positions) - 1
+            self._moves |= segments > 0
             rows = mesh._replace(
                 positions=mesh.positions.reshape(-1, 3),
                 normals=None if mesh.normals is None else np.ascontiguousarray(mesh.normals).reshape(-1, 3),
             )
             number = self.builder.add_mesh(*rows, transform, material, table["prototype"], segments)
+            positions = rows.positions
         else:
             values = self._values("shape", table)
             number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
+            positions = None
+        if table["prototype"]:
+            self._boxes[name] = shape_box(table, positions)
         return number
 
     def triangles(self, name: str, table: Values) -> Triangles:

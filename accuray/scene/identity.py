@@ -15,6 +15,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from accuray.scene.deformation import deforms
+from accuray.scene.motion import Motion
 from accuray.scene.schema import Schema, Type
 from accuray.scene.spectrum import Spectrum
 from accuray.scene.textures import TextureUse
@@ -43,7 +45,7 @@ def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
     """The canonical description: nested dicts of texts, integers and truth values."""
     textures = schema.family("texture").types
     shapes, lights = schema.family("shape").types, schema.family("light").types
-    return {
+    described: dict[str, Any] = {
         "sampling_version": schema.sampling_version,
         "film": _table("film", scene.film, schema.family("film").header),
         "render": _table("render", scene.render, schema.family("render").header),
@@ -55,6 +57,12 @@ def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
         "lights": {name: _object(item, lights) for name, item in scene.lights.items()},
         "shapes": {name: _object(item, shapes) for name, item in scene.shapes.items()},
     }
+    if scene.camera["transform"] is None:
+        del described["camera"]["transform"]  # what did not exist before version 6 of the lowered scene
+    moving = [scene.camera, *scene.shapes.values()]
+    if scene.clock.shutter and any(isinstance(table["transform"], Motion) or deforms(table) for table in moving):
+        described["shutter"] = _value(scene.clock.shutter)
+    return described
 
 
 def _table(section: str, values: dict[str, Any], type_: Type) -> dict[str, Any]:
@@ -83,6 +91,8 @@ def _value(value: Any) -> Any:
         return value.hex()
     if isinstance(value, (tuple, list)):
         return [_value(item) for item in value]
+    if isinstance(value, Motion):
+        return {"motion": _value(value.numbers())}
     if isinstance(value, Spectrum):
         fields = {key: _value(getattr(value, key)) for key in _FIELDS_OF_FORM[value.form]}
         flux = {"flux": True} if value.flux else {}

@@ -229,8 +229,9 @@ def _textured() -> Node:
 def _transform() -> Node:
     rotation = {
         "type": "object",
-        "properties": {"axis": _VECTOR, "angle": _QUANTITY},
-        "required": ["axis", "angle"],
+        "properties": {"axis": _VECTOR, "angle": _QUANTITY, "turns": _NUMBER},
+        "required": ["axis"],
+        "oneOf": [{"required": ["angle"]}, {"required": ["turns"]}],
         "additionalProperties": False,
     }
     look_at = {
@@ -240,15 +241,25 @@ def _transform() -> Node:
         "additionalProperties": False,
     }
     scale = {"anyOf": [_NUMBER, {**_NUMBERS, "minItems": 3, "maxItems": 3}]}
-    step = {
+    parts: Node = {
+        "translate": _VECTOR,
+        "rotate": rotation,
+        "scale": scale,
+        "matrix": {"type": "array"},
+        "look_at": look_at,
+    }
+    step = {"type": "object", "properties": parts, "additionalProperties": False}
+    steps = {"type": "array", "items": step, "minItems": 1}
+    key = {
         "type": "object",
-        "properties": {
-            "translate": _VECTOR,
-            "rotate": rotation,
-            "scale": scale,
-            "matrix": {"type": "array"},
-            "look_at": look_at,
-        },
+        "properties": {"time": _QUANTITY, **parts, "steps": steps},
+        "required": ["time"],
         "additionalProperties": False,
     }
-    return {"anyOf": [step, {"type": "array", "items": step, "minItems": 1}]}
+    keyed = {
+        "type": "object",
+        "properties": {"keys": {"type": "array", "items": key, "minItems": 1}},
+        "required": ["keys"],
+        "additionalProperties": False,
+    }
+    return {"anyOf": [step, steps, keyed]}

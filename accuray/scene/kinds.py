@@ -1,8 +1,9 @@
 """One resolver per parameter kind: from what the scene says to the canonical value.
 
 Canonical values: bool, int, float (metres, radians, ...), tuple of floats (vec), str (enum, text, reference),
-list of str (references to shapes), tuple of str (words), float64 4x4 array (transform), float32 and uint32 arrays,
-Spectrum, Path; pictures (height, width, channels); TextureUse for what a texture gives.
+list of str (references to shapes), tuple of str (words), float64 4x4 array (transform; Motion if it changes while the
+shutter is open), float32 and uint32 arrays, Spectrum, Path; pictures (height, width, channels); TextureUse for what a
+texture gives.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from accuray.scene.deformation import keyed_files, resolve_moving
 from accuray.scene.errors import Where
 from accuray.scene.images import parse_pixels
 from accuray.scene.keys import is_keyed
+from accuray.scene.motion import KEYS, parse_motion
 from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
 from accuray.scene.schema import Param
 from accuray.scene.scope import SECTION_OF, Scope
@@ -107,8 +109,12 @@ def _file(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     return resolve(value, where)
 
 
-def _transform(_param: Param, value: Any, where: Where, _scope: Scope) -> Any:
-    return parse_transform(value, where)
+def _transform(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    if not (isinstance(value, dict) and KEYS in value):
+        return parse_transform(value, where)
+    if not param.animatable:
+        raise where.child(KEYS).error("move what stands still", allowed="a transform without keys")
+    return parse_motion(value, where, scope.clock)
 
 
 def _array(param: Param, value: Any, where: Where, scope: Scope) -> Any:

@@ -19,6 +19,7 @@ from accuray.scene.errors import Document, Source, Where
 from accuray.scene.exposure import resolve_exposure
 from accuray.scene.identity import scene_identity
 from accuray.scene.models import expand_models
+from accuray.scene.motion import matrices_of, mirrors
 from accuray.scene.objects import expect_table, resolve_object, resolve_params
 from accuray.scene.paths import Confinement
 from accuray.scene.photometry import read_photometries
@@ -26,6 +27,7 @@ from accuray.scene.scope import Scope
 from accuray.scene.shapes import check_shapes
 from accuray.scene.spectra import check_unused
 from accuray.scene.textures import check_bumps, check_opacity, check_vertices, settle_colour_spaces
+from accuray.scene.transforms import check_rigid
 from accuray.scene.units import LENGTH_UNITS
 
 FORMAT_VERSION = 1
@@ -120,7 +122,7 @@ def build(
     check_vertices(textures, materials, shapes, schema, top)
     check_deforming(shapes, materials, top.child("shapes"))
     _check_spectra(scope)
-    camera = _single("camera", data, top.child("camera"), scope)
+    camera = _camera(scope)
     film["exposure"] = resolve_exposure(film, camera, top.child("film"))
     film["unit"] = film_unit(film["unit"], film["exposure"])
     return Scene(
@@ -164,6 +166,21 @@ def _single(name: str, table: dict[str, Any], where: Where, scope: Scope) -> dic
     return resolve_object(family.types, table.get(name, {"type": family.default}), where, scope)
 
 
+def _camera(scope: Scope) -> dict[str, Any]:
+    """The camera. One that a transform places starts at the origin and looks along -Z, unless it says otherwise."""
+    data, where = scope.document.data, Where(scope.document, ("camera",))
+    given = data.get("camera")
+    if isinstance(given, dict) and "transform" in given:
+        data = {"camera": {"position": [0.0, 0.0, 0.0], "look_at": [0.0, 0.0, -1.0], **given}}
+    camera = _single("camera", data, where, scope)
+    if camera["transform"] is not None:
+        for matrix in matrices_of(camera["transform"]):
+            check_rigid(matrix, "a camera", where.child("transform"))
+            if mirrors(matrix):
+                raise where.child("transform").error("mirrors the camera", allowed="a transform that turns and moves")
+    return camera
+
+
 def _named(section: str, types: dict[str, schemas.Type], scope: Scope) -> dict[str, dict[str, Any]]:
     """A section of named objects, in the order of their names, so that spelling order changes no sample."""
     where = Where(scope.document, (section,))
@@ -181,12 +198,7 @@ def _check_name(name: str, where: Where) -> None:
 def _clock(scope: Scope) -> Clock:
     where = Where(scope.document, ("animation",))
     values = resolve_params(scope.schema.family("animation").header, _section("animation", scope), where, scope)
-    clock = Clock.of(values)
-    if clock.close < clock.open:
-        raise where.child("shutter_close").error(
-            "closes the shutter before it opens", value=values["shutter_close"], allowed="shutter_open or later"
-        )
-    return clock
+    return Clock.of(values, where)
 
 
 def _film(scope: Scope) -> tuple[dict[str, Any], dict[str, Any]]:

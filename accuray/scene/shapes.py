@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from accuray.scene.errors import Where
+from accuray.scene.motion import Motion, matrices_of
 from accuray.scene.schema import Param, Schema, Type
 from accuray.scene.transforms import check_rigid
 
@@ -20,7 +21,11 @@ def check_shapes(shapes: Shapes, schema: Schema, where: Where) -> None:
     for name, shape in shapes.items():
         if types[shape["type"]].rigid and shape["transform"] is not None:
             noun, place = f"a shape of the type {shape['type']}", where.child(name, "transform")
-            check_rigid(shape["transform"], noun, place, "; or a mesh, rectangle or solid, which take any")
+            for matrix in matrices_of(shape["transform"]):
+                check_rigid(matrix, noun, place, "; or a mesh, rectangle or solid, which take any")
+        if shape["prototype"] and isinstance(shape["transform"], Motion):
+            problem = "moves a prototype, which is no place in the scene"
+            raise where.child(name, "transform").error(problem, allowed="the keys in the transforms of its instances")
         links = _links(types[shape["type"]])
         if shape["material"] is None and not links:
             raise where.child(name).error("has no material", allowed='material = "NAME" of a table in [materials]')

@@ -49,6 +49,12 @@ MeshArrays to_arrays(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& i
   return arrays;
 }
 
+std::vector<Matrix> to_matrices(const Rows<double, 12>& rows) {
+  std::vector<Matrix> matrices(rows.shape(0));
+  for (size_t i = 0; i < matrices.size(); ++i) std::copy_n(rows.data() + 12 * i, 12, matrices[i].begin());
+  return matrices;
+}
+
 void bind_spectra(nb::class_<SceneBuilder>& builder) {
   builder
       .def(
@@ -201,8 +207,13 @@ void bind_surfaces(nb::class_<SceneBuilder>& builder) {
              uint32_t material,
              bool prototype) { return b.add_shape(type, to_values(values), transform, material, prototype); },
           "type"_a, "values"_a, "transform"_a.none(), "material"_a, "prototype"_a)
-      .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(),
-           "material"_a.none());
+      .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(), "material"_a.none())
+      .def(
+          "add_moving_instance",
+          [](SceneBuilder& b, uint32_t first, uint32_t count, const Rows<double, 12>& keys,
+             std::optional<uint32_t> material) { b.add_moving_instance(first, count, to_matrices(keys), material); },
+          "first"_a, "count"_a, "keys"_a, "material"_a.none(),
+          "keys (K, 12): transforms at equal steps of time, the upper three rows, row by row.");
 }
 
 void bind_lights(nb::class_<SceneBuilder>& builder) {
@@ -245,6 +256,15 @@ void bind_view(nb::class_<SceneBuilder>& builder) {
             b.set_camera(type, to_values(values), {width, height});
           },
           "type"_a, "values"_a, "width"_a, "height"_a)
+      .def(
+          "set_camera_motion",
+          [](SceneBuilder& b, const Rows<double, 12>& keys) { b.set_camera_motion(to_matrices(keys)); }, "keys"_a)
+      .def(
+          "set_shutter",
+          [](SceneBuilder& b, const Column<double>& times, const Column<double>& transmissions) {
+            b.set_shutter(span_of(times), span_of(transmissions));
+          },
+          "times"_a, "transmissions"_a)
       .def(
           "set_filter",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values) {

@@ -139,14 +139,14 @@ nb::object footprints(const LoadedScene& scene, uint32_t width, uint32_t height,
   return to_numpy(std::move(diameters), 0);
 }
 
-nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference,
-                      const Rows<float, 2>& u) {
+nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Rows<float, 2>& u,
+                      float time) {
   const SceneView& view = scene.accel.view();
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   std::vector<float> wi, point, distance, pdf, scale;
   for (size_t i = 0; i < u.shape(0); ++i) {
-    const LightSample s =
-        sample_light(view, light, {reference[0], reference[1], reference[2]}, {u.data()[2 * i], u.data()[2 * i + 1]});
+    const LightSample s = sample_light(view, light, {reference[0], reference[1], reference[2]}, time,
+                                       {u.data()[2 * i], u.data()[2 * i + 1]});
     put(wi, s.wi);
     put(point, s.point);
     distance.push_back(s.distance);
@@ -163,22 +163,23 @@ nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float
 }
 
 // Density with which light_sample() chooses each direction; 0 where the ray does not meet the light.
-nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Vectors& wi) {
+nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Vectors& wi,
+                        float time) {
   const SceneView& view = scene.accel.view();
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   const EmbreeAccel accel(scene.accel);
   const Vec3 from = {reference[0], reference[1], reference[2]};
   std::vector<float> pdf;
   for (size_t i = 0; i < wi.shape(0); ++i) {
-    const Ray ray{from, row(wi, i)};
+    const Ray ray{from, row(wi, i), infinity, time};
     const Hit hit = accel.closest(ray);
     if (hit.geometry == none) {
       const bool infinite = is_infinite_light(view.lights[light].light.tag);
-      pdf.push_back(infinite ? light_pdf(view, light, from, ray.direction, Surface{}) : 0.0f);
+      pdf.push_back(infinite ? light_pdf(view, light, from, time, ray.direction, Surface{}) : 0.0f);
       continue;
     }
     const Surface surface = surface_at(view, ray, hit);
-    pdf.push_back(surface.light == light ? light_pdf(view, light, from, ray.direction, surface) : 0.0f);
+    pdf.push_back(surface.light == light ? light_pdf(view, light, from, time, ray.direction, surface) : 0.0f);
   }
   return to_numpy(std::move(pdf), 0);
 }
@@ -243,7 +244,8 @@ nb::list light_names(const LoadedScene& scene) {
   return result;
 }
 
-nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors& directions, bool exhaustive) {
+nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors& directions, bool exhaustive,
+                 float time) {
   require_rows(origins.shape(0), directions.shape(0));
   const SceneView& view = scene.accel.view();
   const EmbreeAccel embree(scene.accel);
@@ -251,7 +253,7 @@ nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors
   std::vector<float> t, point, error, normal, shading;
   std::vector<uint32_t> geometry, primitive, instance;
   for (size_t i = 0; i < origins.shape(0); ++i) {
-    const Ray ray{row(origins, i), row(directions, i)};
+    const Ray ray{row(origins, i), row(directions, i), infinity, time};
     const Hit hit = exhaustive ? every.closest(ray) : embree.closest(ray);
     const Surface s = hit.geometry == none ? Surface{} : surface_at(view, ray, hit);
     t.push_back(hit.geometry == none ? infinity : hit.t);
@@ -277,14 +279,14 @@ nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors
 
 // From surface points (as closest() gives them), whether a ray off them to each direction leaves the scene.
 nb::object escapes(const LoadedScene& scene, const Vectors& points, const Vectors& errors, const Vectors& normals,
-                   const Vectors& directions) {
+                   const Vectors& directions, float time) {
   require_rows(points.shape(0), directions.shape(0));
   const EmbreeAccel accel(scene.accel);
   std::vector<uint8_t> result;
   for (size_t i = 0; i < points.shape(0); ++i) {
     const Vec3 d = row(directions, i);
     const Vec3 from = offset_origin(row(points, i), row(errors, i), row(normals, i), d);
-    result.push_back(accel.transmittance({from, d}) > 0.0f ? 1 : 0);
+    result.push_back(accel.transmittance({from, d, infinity, time}) > 0.0f ? 1 : 0);
   }
   return to_numpy(std::move(result), 0);
 }
@@ -302,7 +304,7 @@ nb::object filter_sample(const LoadedScene& scene, const Column<float>& u) {
 }
 
 // Rays of the scene's camera: for points of the film, (0, 0) to (1, 1), and of the lens's unit square.
-nb::dict camera_ray(const LoadedScene& scene, const Rows<float, 2>& film, const Rows<float, 2>& lens) {
+nb::dict camera_ray(const LoadedScene& scene, const Rows<float, 2>& film, const Rows<float, 2>& lens, float time) {
   require_rows(film.shape(0), lens.shape(0));
   const SceneView& view = scene.accel.view();
   std::vector<float> origins, directions;
@@ -312,9 +314,11 @@ nb::dict camera_ray(const LoadedScene& scene, const Rows<float, 2>& film, const 
     for (size_t i = 0; i < film.shape(0); ++i) {
       const float* f = film.data() + 2 * i;
       const float* l = lens.data() + 2 * i;
-      const CameraRay r = camera.ray({f[0], f[1]}, {l[0], l[1]}, 0.0f);
-      put(origins, r.ray.origin);
-      put(directions, r.ray.direction);
+      const CameraRay r = camera.ray({f[0], f[1]}, {l[0], l[1]}, time);
+      const uint32_t motion = view.root->camera_motion;
+      const Ray ray = motion == none ? r.ray : carried_by(view, motion, r.ray);
+      put(origins, ray.origin);
+      put(directions, ray.direction);
       seen.push_back(r.seen ? 1 : 0);
     }
     return true;
@@ -384,17 +388,17 @@ void bind_probe(nb::module_& module) {
   probe.def("sheen_albedo", &sheen_albedo, "cosine"_a, "roughness"_a);
   probe.def("texture_values", &texture_values, "scene"_a, "texture"_a, "uv"_a, "points"_a, "footprint"_a = 0.0f);
   probe.def("footprints", &footprints, "scene"_a, "width"_a, "height"_a, "pixels"_a);
-  probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);
-  probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);
+  probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a, "time"_a = 0.0f);
+  probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a, "time"_a = 0.0f);
   probe.def("light_power", &light_power, "scene"_a, "light"_a, "scene_radius"_a);
   probe.def("light_radiance", &light_radiance, "scene"_a, "light"_a, "wavelengths"_a, "wi"_a);
   probe.def("choose_lights", &choose_lights, "scene"_a, "points"_a, "normals"_a, "u"_a);
   probe.def("choice_probabilities", &choice_probabilities, "scene"_a, "points"_a, "normals"_a);
   probe.def("light_names", &light_names, "scene"_a);
-  probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false);
-  probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a);
+  probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false, "time"_a = 0.0f);
+  probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a, "time"_a = 0.0f);
   probe.def("filter_sample", &filter_sample, "scene"_a, "u"_a);
-  probe.def("camera_ray", &camera_ray, "scene"_a, "film"_a, "lens"_a);
+  probe.def("camera_ray", &camera_ray, "scene"_a, "film"_a, "lens"_a, "time"_a = 0.0f);
   probe.def("sampler_points", &sampler_points, "key"_a, "set"_a, "first"_a, "count"_a);
   probe.def("quantized_sums", &quantized_sums, "value"_a, "step"_a, "key"_a, "count"_a);
   probe.def("function", &functions, "name"_a, "x"_a, "An elementary function of kernels/math at each x.");

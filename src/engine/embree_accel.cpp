@@ -140,6 +140,19 @@ RTCScene EmbreeScene::prototype_scene(uint32_t first, uint32_t count) {
   return prototype;
 }
 
+// One transform, or those of its keys: Embree moves between them in straight lines, as geometry/motion.h says.
+void EmbreeScene::place(RTCGeometry instance, const InstanceRecord& record) const {
+  if (record.motion == none) {
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, &record.to_world.m[0][0]);
+    return;
+  }
+  const MotionRecord& motion = view_.motions[record.motion];
+  rtcSetGeometryTimeStepCount(instance, motion.count);
+  for (uint32_t k = 0; k < motion.count; ++k) {
+    rtcSetGeometryTransform(instance, k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, &view_.motion_keys[motion.first + k].m[0][0]);
+  }
+}
+
 void EmbreeScene::attach_instances() {
   std::map<std::pair<uint32_t, uint32_t>, RTCScene> made;
   for (uint32_t i = 0; i < view_.root->instances.count; ++i) {
@@ -148,7 +161,7 @@ void EmbreeScene::attach_instances() {
     if (prototype == nullptr) prototype = prototype_scene(record.first, record.count);
     RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, prototype);
-    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, &record.to_world.m[0][0]);
+    place(instance, record);
     rtcSetGeometryMask(instance, 0xffffffffu);
     rtcCommitGeometry(instance);
     rtcAttachGeometryByID(scene_, instance, first_instance_ + i);

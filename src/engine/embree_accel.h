@@ -47,6 +47,7 @@ class EmbreeScene {
   RTCGeometry make_geometry(uint32_t number);
   void attach(RTCScene target, uint32_t number, uint32_t id);
   RTCScene prototype_scene(uint32_t first, uint32_t count);
+  void place(RTCGeometry instance, const InstanceRecord& record) const;
   void attach_instances();
   void commit(RTCScene target);
   void check(const char* action);

@@ -67,8 +67,9 @@ SceneBuilder::SceneBuilder(ColourData colour)
     : spectra_(std::move(colour)),
       textures_(pool_, spectra_, bulk_),
       environments_(textures_, bulk_),
-      lights_(pool_, spectra_) {
+      lights_(pool_, spectra_, motions_) {
   root_.version = block_version;
+  root_.camera_motion = none;
   root_.film_step = 0x1p-24f;
 }
 
@@ -206,19 +207,22 @@ uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t li
   return number;
 }
 
-uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place) {
+uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place,
+                                       uint32_t motion) {
   if (material.emission.index == none) return none;
   const auto first = static_cast<uint32_t>(light_of_primitive_.size());
-  const auto lights =
-      lights_.add_mesh(arrays.positions, arrays.indices, material.emission, material.emits_both_sides != 0, place);
+  const auto lights = lights_.add_mesh(arrays.positions, arrays.indices, material.emission,
+                                       material.emits_both_sides != 0, place, motion);
   light_of_primitive_.insert(light_of_primitive_.end(), lights.begin(), lights.end());
   return first;
 }
 
 template <class L>
-uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& material, LightPlace place) {
+uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& material, LightPlace place,
+                                         uint32_t motion) {
   if (material.emission.index == none) return none;
-  light_of_primitive_.push_back(lights_.add(light, material.emission, material.emits_both_sides != 0, place));
+  light_of_primitive_.push_back(
+      lights_.add(light, material.emission, material.emits_both_sides != 0, place, {}, motion));
   return static_cast<uint32_t>(light_of_primitive_.size() - 1);
 }
 
@@ -277,9 +281,19 @@ void SceneBuilder::add_instance(uint32_t first, uint32_t count, const std::optio
       throw std::invalid_argument("transform moves or scales by more than 1e15 or less than 1e-15");
     }
   }
-  InstanceRecord instance{to_transform(matrix),   to_transform(inverse(matrix)), first, count, none,
-                          material.value_or(none)};
+  InstanceRecord instance{
+      to_transform(matrix), to_transform(inverse(matrix)), first, count, none, material.value_or(none), none};
   instance.lights = instance_lights(matrix, instance, material);
+  instances_.push_back(instance);
+}
+
+void SceneBuilder::add_moving_instance(uint32_t first, uint32_t count, std::span<const Matrix> keys,
+                                       std::optional<uint32_t> material) {
+  InstanceRecord instance{{}, {}, first, count, none, material.value_or(none), motions_.add(keys)};
+  instance.to_world = to_transform(keys.front());
+  float determinant = 0.0f;
+  instance.to_object = inverse_of(instance.to_world, determinant);
+  instance.lights = instance_lights(identity_matrix, instance, material);
   instances_.push_back(instance);
 }
 
@@ -289,9 +303,10 @@ uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecor
   bool any = false;
   for (uint32_t g = instance.first; g < instance.first + instance.count; ++g) {
     const GeometryRecord& geometry = geometries_.at(g);
-    scene_bounds_.grow(bounds_.at(g).moved(matrix));
+    const bool moves = instance.motion != none;
+    scene_bounds_.grow(moves ? motions_.swept(instance.motion, bounds_.at(g)) : bounds_.at(g).moved(matrix));
     const uint32_t lights = copied_lights(matrix, materials_.at(material.value_or(geometry.material)),
-                                          {g, static_cast<uint32_t>(instances_.size()), 0});
+                                          {g, static_cast<uint32_t>(instances_.size()), 0}, instance.motion);
     any = any || lights != none;
     lights_of_instance_.push_back(lights);
   }
@@ -300,15 +315,18 @@ uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecor
   return none;
 }
 
-uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place) {
+uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place,
+                                     uint32_t motion) {
   if (material.emission.index == none) return none;
   const GeometryRecord& geometry = geometries_.at(place.geometry);
   const uint32_t* parameters = pool_.words().data() + geometry.shape.offset;
   if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
-    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Sphere*>(parameters))), material, place);
+    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Sphere*>(parameters))), material, place,
+                             motion);
   }
   if (geometry.shape.tag == tag_of<Disk>(Shapes{})) {
-    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Disk*>(parameters))), material, place);
+    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Disk*>(parameters))), material, place,
+                             motion);
   }
   const Mesh& mesh = *reinterpret_cast<const Mesh*>(parameters);
   const auto* vertices = reinterpret_cast<const float*>(bulk_.at(mesh.vertices.section - 1).data);
@@ -317,7 +335,7 @@ uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord&
   world.positions = positions_of(mesh, vertices);
   world.indices.assign(indices, indices + mesh.indices.count);
   move_mesh(matrix, world);
-  return add_mesh_lights(world, material, place);
+  return add_mesh_lights(world, material, place, motion);
 }
 
 void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission,
@@ -332,6 +350,22 @@ void SceneBuilder::add_light(std::string_view type, const Values& values, Spectr
 
 void SceneBuilder::set_camera(std::string_view type, const Values& values, const FilmSize& film) {
   root_.camera = lower_camera(type, values, film, pool_);
+}
+
+void SceneBuilder::set_camera_motion(std::span<const Matrix> keys) { root_.camera_motion = motions_.add(keys); }
+
+void SceneBuilder::set_shutter(std::span<const double> times, std::span<const double> transmissions) {
+  if (times.size() < 2 || times.size() != transmissions.size()) {
+    throw std::invalid_argument("a shutter has two nodes or more, each with a time and a transmission");
+  }
+  std::vector<double> sums{0.0};
+  for (size_t i = 1; i < times.size(); ++i) {
+    sums.push_back(sums.back() + 0.5 * (times[i] - times[i - 1]) * (transmissions[i] + transmissions[i - 1]));
+  }
+  shutter_.clear();
+  for (const double time : times) shutter_.push_back(static_cast<float>(time));
+  for (const double sum : sums) shutter_.push_back(static_cast<float>(sum / sums.back()));
+  for (const double open : transmissions) shutter_.push_back(static_cast<float>(open / sums.back()));
 }
 
 void SceneBuilder::set_filter(std::string_view type, const Values& values) {
@@ -368,6 +402,8 @@ SceneView SceneBuilder::draft(const std::vector<const uint8_t*>& sections) const
   view.sections = sections.data();
   view.geometries = geometries_.data();
   view.instances = instances_.data();
+  view.motions = motions_.records().data();
+  view.motion_keys = motions_.keys().data();
   view.lights = lights_.records().data();
   view.light_places = lights_.places().data();
   view.spectra = spectra_.records().data();
@@ -400,6 +436,9 @@ Block SceneBuilder::finish() {
   root_.interiors = writer.append(interiors_);
   root_.geometries = writer.append(geometries_);
   root_.instances = writer.append(instances_);
+  root_.motions = writer.append(motions_.records());
+  root_.motion_keys = writer.append(motions_.keys());
+  root_.shutter = writer.append(shutter_);
   root_.lights = writer.append(lights_.records());
   if (lights_.any_textured()) root_.light_places = writer.append(lights_.places());
   for (InfiniteRecord& infinite : infinite_) infinite.hidden |= hide_infinite_ ? 1u : 0u;

@@ -16,6 +16,7 @@
 #include "lower/environments.h"
 #include "lower/lamps.h"
 #include "lower/lights.h"
+#include "lower/motion.h"
 #include "lower/parameters.h"
 #include "lower/sky_model.h"
 #include "lower/spectra.h"
@@ -44,6 +45,9 @@ class SceneBuilder {
                      uint32_t material, bool prototype);
   void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
                     std::optional<uint32_t> material);
+  // `keys`: its transforms at equal steps of time from the shutter's opening to its closing.
+  void add_moving_instance(uint32_t first, uint32_t count, std::span<const Matrix> keys,
+                           std::optional<uint32_t> material);
   void add_light(std::string_view type, const Values& values, SpectrumRef emission, const Photometry& photometry);
   // `emission`: the disc's radiance, or its irradiance on a plane that faces it.
   void add_sun(const Values& values, SpectrumRef emission, bool is_irradiance);
@@ -52,6 +56,10 @@ class SceneBuilder {
   void add_sky(const Values& values, SpectrumRef albedo, const SkyData& data);
 
   void set_camera(std::string_view type, const Values& values, const FilmSize& film);
+  // What carries the camera as it was set, as for an instance.
+  void set_camera_motion(std::span<const Matrix> keys);
+  // Nodes of what the shutter lets through: times from 0 to 1, rising, and transmissions, not all zero.
+  void set_shutter(std::span<const double> times, std::span<const double> transmissions);
   void set_filter(std::string_view type, const Values& values);
   void set_integrator(std::string_view type, const Values& values);
   void set_film(double step, bool hide_environment);
@@ -64,8 +72,8 @@ class SceneBuilder {
   bool bounds_body(uint32_t material) const;
   MaterialRecord material_with(const Values& header, std::optional<SpectrumRef> emission);
   uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds, bool prototype);
-  // The lights of an instance's copy of a geometry, or none.
-  uint32_t copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place);
+  // The lights of an instance's copy of a geometry, or none; those of a moving one stay in its prototype's space.
+  uint32_t copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place, uint32_t motion);
   // What fills a body of a material with these values; none if it is no dielectric.
   uint32_t add_interior(const Values& values);
   // A bulk array in a section of its own; an empty one stays nowhere.
@@ -74,11 +82,12 @@ class SceneBuilder {
   template <class T>
   Slice<T> store(Section section);
   // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
-  uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place);
+  uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place,
+                           uint32_t motion = none);
   template <class Shape>
   uint32_t add_analytic(const Shape& shape, uint32_t material, bool prototype);
   template <class L>
-  uint32_t add_surface_light(const L& light, const MaterialRecord& material, LightPlace place);
+  uint32_t add_surface_light(const L& light, const MaterialRecord& material, LightPlace place, uint32_t motion = none);
   uint32_t instance_lights(const Matrix& matrix, const InstanceRecord& instance, std::optional<uint32_t> material);
   void add_constant(const Values& values, SpectrumRef emission);
   template <class L>
@@ -93,6 +102,7 @@ class SceneBuilder {
   std::vector<Section> bulk_;  // sections 1, 2, ...
   TexturePool textures_;
   EnvironmentPool environments_;
+  MotionPool motions_;
   LightTable lights_;
   Root root_{};
   std::vector<MaterialRecord> materials_;
@@ -100,6 +110,7 @@ class SceneBuilder {
   std::vector<GeometryRecord> geometries_;
   std::vector<InstanceRecord> instances_;
   std::vector<InfiniteRecord> infinite_;
+  std::vector<float> shutter_;
   bool hide_infinite_ = false;
   std::vector<uint32_t> light_of_primitive_;
   std::vector<uint32_t> lights_of_instance_;

@@ -123,3 +123,12 @@ def test_path_and_reference_agree():
     results = [picture(shapes, spp=1024, width=16, integrator={"type": name}, **more) for name in ("path", "reference")]
     (mean, error), (other, other_error) = ((np.asarray(r), r.layers["error"]) for r in results)
     assert image_z_test(mean, error, other, other_error, dof=3)
+
+
+def test_the_shape_of_the_shutter_counts():
+    """A bar that jumps from left to right in straight lines, seen mostly around half time."""
+    ramp = {**SHUTTER, "shutter_shape": "triangle"}
+    shapes = {"bar": moving(bar(-0.6), bar(0.4))}
+    seen = shadow(picture(shapes, spp=4096, animation=ramp))
+    assert seen[31:33].mean() > 1.5 * seen[20:23].mean()
+    assert seen.sum() * 2 * HALF / 64 == pytest.approx(0.2, rel=5e-3)

@@ -18,6 +18,10 @@ struct Exhaustive {
     meet(ray, 0, scene->root->top_geometries, none, hit);
     for (uint32_t i = 0; i < scene->root->instances.count; ++i) {
       const InstanceRecord& instance = scene->instances[i];
+      if (instance.motion != none) {
+        meet(into_moving(*scene, instance.motion, ray), instance.first, instance.count, i, hit);
+        continue;
+      }
       Ray local = ray;
       local.origin = instance.to_object.point(ray.origin);
       local.direction = instance.to_object.vector(ray.direction);

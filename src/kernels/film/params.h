@@ -117,7 +117,28 @@ struct AnimationCommon {
                             .doc = "When the shutter closes, from the frame's time on; a quarter of a frame after it.",
                             .low = -1e9,
                             .high = 1e9,
-                            .unit = "s"});
+                            .unit = "s"},
+                      Param{.name = "shutter_shape",
+                            .kind = Kind::choice,
+                            .doc = "What the shutter lets through: box all of the light all the time, triangle most of "
+                                   "it in the middle, trapezoid all of it but for a ramp at both ends.",
+                            .preset = "\"box\"",
+                            .choices = "box|triangle|trapezoid",
+                            .group = "shutter:shape"},
+                      Param{.name = "shutter_ramp",
+                            .kind = Kind::real,
+                            .doc = "Share of the interval that each ramp of a trapezoid takes.",
+                            .preset = "0.25",
+                            .low = 0,
+                            .high = 0.5,
+                            .group = "shutter:shape"},
+                      Param{.name = "shutter_curve",
+                            .kind = Kind::array,
+                            .doc = "Transmission of the shutter by lines between points, each a share of the interval "
+                                   "and what is let through there; the first is at 0, the last at 1.",
+                            .low = 0,
+                            .role = "Nx2",
+                            .group = "shutter:curve"});
   }
 };
 

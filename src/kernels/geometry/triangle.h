@@ -5,6 +5,7 @@
 // positions and normals move on straight lines, as Embree moves them.
 #pragma once
 
+#include "kernels/geometry/motion.h"
 #include "kernels/geometry/shapes.h"
 
 namespace accuray {
@@ -20,11 +21,9 @@ struct Triangle {
 };
 
 ACCURAY_NOINLINE inline Vec3 deformed(const float* values, uint64_t floats_per_key, uint32_t segments, float time) {
-  const float moment = time * static_cast<float>(segments);
-  const uint32_t segment = min(static_cast<uint32_t>(max(moment, 0.0f)), segments - 1);
-  const float share = moment - static_cast<float>(segment);
-  const float* before = values + floats_per_key * segment;
-  return fma(1.0f - share, load_vec3(before, 0), load_vec3(before + floats_per_key, 0) * share);
+  const Step step = step_at(time, segments);
+  const float* before = values + floats_per_key * step.segment;
+  return fma(1.0f - step.share, load_vec3(before, 0), load_vec3(before + floats_per_key, 0) * step.share);
 }
 
 // Three numbers of a vertex, which begin at `values` at the first key.
