@@ -238,4 +238,26 @@ BUGS = (
         "sincos((0.5f - film.y) * half_pi)",
         "C7.panorama-side",
     ),
+    bug(
+        "motion-in-steps",
+        "geometry/motion.h",
+        "scaled - static_cast<float>(k)};",
+        "0.5f};",
+        "C7.ball-0.05",
+        "C7.picture-camera",
+    ),
+    bug(
+        "light-stays-at-its-first-key",
+        "light/moving.h",
+        "const Moment moment = moment_of(scene, record.motion, time);",
+        "const Moment moment = moment_of(scene, record.motion, 0.0f * time);",
+        "C7.flying-lamp/light",
+    ),
+    bug(
+        "shutter-opens-too-soon",
+        "film/shutter.h",
+        "open[k] + sqrt(",
+        "open[k + 1] + sqrt(",
+        "C7.shutter-triangle-middle",
+    ),
 )
