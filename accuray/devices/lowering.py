@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from accuray import data
 from accuray.devices.emitters import spread_emissions
+from accuray.devices.kept import Kept
 from accuray.devices.lights import LightLowering, matrix
 from accuray.devices.materials import MaterialLowering
 from accuray.devices.rgb_table import rgb_table
@@ -29,13 +30,27 @@ Values = dict[str, Any]
 MeshReport = dict[str, Any]
 
 
-def lower(scene: Scene) -> tuple[Any, dict[str, MeshReport]]:
+def lower(scene: Scene, kept: Kept | None = None) -> tuple[Any, dict[str, MeshReport]]:
     """The scene's relocatable block (``accuray._core.lower.Block``), and by shape what its mesh lost on the way.
 
-    Raises SceneError for what only the builder can find out, such as a camera that looks at itself.
+    ``kept`` holds the parts of an earlier frame and takes those of this one. Raises SceneError for what only the
+    builder can find out, such as a camera that looks at itself.
     """
-    lowering = _Lowering(scene)
+    lowering = _Lowering(scene, kept)
     return lowering.block(), lowering.reports
+
+
+def with_camera(scene: Scene, block: Any) -> Any | None:
+    """The block of a scene that differs in its camera alone; None if it must be lowered anew. Raises SceneError."""
+    from accuray._core import lower as core
+
+    lowering, camera, film = _Lowering(scene), scene.camera, scene.film
+    params = schemas.current().family("camera").types[camera["type"]].params
+    if any(param.kind not in ("float", "vec", "enum", "int", "bool") for param in params):
+        return None
+    values = lowering._values("camera", camera)
+    change = partial(core.with_camera, block, camera["type"], values, film["width"], film["height"])
+    return lowering._guard("camera", change)
 
 
 class Triangles(NamedTuple):
@@ -72,10 +87,11 @@ def triangles(scene: Scene, shape: str) -> Triangles:
 class _Lowering:
     """Walks the resolved tables once; names become the numbers that the block uses."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, kept: Kept | None = None) -> None:
         from accuray._core import lower as core
 
         self.scene = scene
+        self.kept = Kept() if kept is None else kept
         self.cmf, self.d65 = colour_arrays()
         self.builder = core.SceneBuilder(self.cmf, self.d65)
         self.solids: tuple[str, ...] = core.SOLIDS
@@ -149,7 +165,8 @@ class _Lowering:
 
     def _picture(self, pixels: NDArray[Any]) -> int:
         """The builder's number of a picture; those of equal content share one."""
-        key = (pixels.dtype.str, pixels.shape, hashlib.sha256(pixels.data).digest())
+        digest = self.kept.part("digest", (pixels,), None, lambda: hashlib.sha256(pixels.data).digest())
+        key = (pixels.dtype.str, pixels.shape, digest)
         if key not in self._pictures:
             self._pictures[key] = self.builder.add_picture(pixels)
         return self._pictures[key]
@@ -189,17 +206,38 @@ class _Lowering:
             self._guard(f"shapes.{name}", add)
 
     def _add_shape(self, name: str, table: Values) -> int:
-        material, transform = self.materials[table["material"]], matrix(table["transform"])
+        material = self.materials[table["material"]]
         number: int
         if table["type"] == "mesh" or table["type"] in self.solids:
+            number = self.builder.add_mesh(self._placed_mesh(name, table), material, table["prototype"])
+        else:
+            values, transform = self._values("shape", table), matrix(table["transform"])
+            number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
+        return number
+
+    def _placed_mesh(self, name: str, table: Values) -> Any:
+        """The mesh of a shape in its place, which scenes that show the same one share."""
+        from accuray._core import lower as core
+
+        sources: list[Any] = []
+        options: list[Any] = [self._reads_colors]
+        for key, value in table.items():
+            if isinstance(value, np.ndarray) and key != "transform":
+                sources.append(value)
+            elif key not in ("material", "prototype", "file"):
+                options.append((key, value.tobytes() if isinstance(value, np.ndarray) else value))
+
+        def place() -> tuple[Any, MeshReport | None]:
+            self.reports.pop(name, None)
             mesh = self.triangles(name, table)
             if not self._reads_colors:
                 mesh = mesh._replace(colors=None)
-            number = self.builder.add_mesh(*mesh, transform, material, table["prototype"])
-        else:
-            values = self._values("shape", table)
-            number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
-        return number
+            return core.place_mesh(*mesh, matrix(table["transform"])), self.reports.get(name)
+
+        placed, report = self.kept.part("mesh", tuple(sources), tuple(options), place)
+        if report is not None:
+            self.reports[name] = report
+        return placed
 
     def triangles(self, name: str, table: Values) -> Triangles:
         """The triangles of a mesh or of one of `solids`."""

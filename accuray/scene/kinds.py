@@ -8,11 +8,13 @@ Spectrum, Path; pictures (height, width, channels); TextureUse for what a textur
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from accuray.scene.arrays import parse_array
 from accuray.scene.errors import Where
 from accuray.scene.images import parse_pixels
+from accuray.scene.keys import is_keyed, resolve_keyed
 from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
 from accuray.scene.schema import Param
 from accuray.scene.scope import SECTION_OF, Scope
@@ -23,6 +25,9 @@ from accuray.scene.transforms import parse_transform
 VOCABULARIES: dict[str, Callable[[], list[str]]] = {"metal": metal_names}
 """Text parameters whose role (or name) stands here take a name out of the data that come with the renderer."""
 
+KEYED_ELSEWHERE = ("spectrum", "transform")
+"""Kinds whose own parsers know keys: spectra have names, which keys may stand behind."""
+
 ABSOLUTE = "absolute"
 """Role of a length whose bare numbers are metres whatever the file's length_unit says (a lens in a model in km)."""
 
@@ -31,6 +36,12 @@ def resolve_value(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     """The canonical value of a parameter that the scene gives. Raises SceneError."""
     if names_texture(value):
         return parse_use(param, value, where, scope)
+    if is_keyed(value) and param.kind not in KEYED_ELSEWHERE:
+        return resolve_keyed(param, value, where, scope, partial(_plain, param, scope))
+    return _RESOLVERS[param.kind](param, value, where, scope)
+
+
+def _plain(param: Param, scope: Scope, value: Any, where: Where) -> Any:
     return _RESOLVERS[param.kind](param, value, where, scope)
 
 
@@ -102,8 +113,11 @@ def _transform(_param: Param, value: Any, where: Where, _scope: Scope) -> Any:
     return parse_transform(value, where)
 
 
-def _array(param: Param, value: Any, where: Where, _scope: Scope) -> Any:
-    return parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
+def _array(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    if where.path not in scope.arrays:
+        parsed = parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
+        scope.arrays[where.path] = parsed
+    return scope.arrays[where.path]
 
 
 def _reference(param: Param, value: Any, where: Where, scope: Scope) -> str | list[str] | TextureUse:

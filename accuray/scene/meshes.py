@@ -14,6 +14,7 @@ from accuray.scene.arrays import scale_to_metres
 from accuray.scene.errors import Where
 from accuray.scene.readers import Readers
 from accuray.scene.schema import Type
+from accuray.scene.scope import Scope
 
 MeshReader = Callable[[Path], dict[str, Any]]
 """Reads a file into arrays by the names of the parameters: positions float32 (N, 3), faces uint32 (M, 3), and each or
@@ -24,15 +25,22 @@ _readers: Readers[dict[str, Any]] = Readers()
 register_reader = _readers.register
 
 
-def fill_from_file(type_: Type, values: dict[str, Any], path: Path, where: Where) -> dict[str, Any]:
+def fill_from_file(type_: Type, values: dict[str, Any], path: Path, where: Where, scope: Scope) -> dict[str, Any]:
     """Read ``path`` into the array parameters of ``type_`` and return the reader's report.
 
-    Coordinates in the file are in the length unit of the scene file that names it.
+    Coordinates in the file are in the length unit of the scene file that names it. A file that several shapes or
+    frames name is read once.
     """
-    arrays = _readers.read(path, where)
+    key = path, where.source.length_unit
+    if key not in scope.meshes:
+        arrays = _readers.read(path, where)
+        for param in type_.params:
+            if param.kind == "array" and param.unit == "m" and arrays.get(param.name) is not None:
+                arrays[param.name] = scale_to_metres(arrays[param.name], where.source.length_unit)
+        scope.meshes[key] = arrays
+    arrays = scope.meshes[key]
     for param in type_.params:
         if param.kind == "array" and arrays.get(param.name) is not None:
-            array = arrays[param.name]
-            values[param.name] = scale_to_metres(array, where.source.length_unit) if param.unit == "m" else array
+            values[param.name] = arrays[param.name]
     report: dict[str, Any] = arrays.get("report") or {}
     return report

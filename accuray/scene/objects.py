@@ -123,4 +123,6 @@ def _expand_shorthands(type_: Type, values: dict[str, Any], where: Where, scope:
         elif param.role == "image":
             values["pixels"] = read_pixels(value, where.child(param.name), scope)
         elif param.kind == "file":
-            scope.mesh_reports[str(where.path[-1])] = fill_from_file(type_, values, value, where.child(param.name))
+            scope.mesh_reports[str(where.path[-1])] = fill_from_file(
+                type_, values, value, where.child(param.name), scope
+            )

@@ -185,14 +185,10 @@ void bind_surfaces(nb::class_<SceneBuilder>& builder) {
           "type"_a, "values"_a, "header"_a, "emission"_a.none())
       .def(
           "add_mesh",
-          [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
-             const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
-             const std::optional<Rows<float, 4>>& colors, const OptionalMatrix& transform, uint32_t material,
-             bool prototype) {
-            return b.add_mesh(to_arrays(positions, indices, normals, uvs, colors), transform, material, prototype);
+          [](SceneBuilder& b, const PlacedMesh& mesh, uint32_t material, bool prototype) {
+            return b.add_mesh(mesh, material, prototype);
           },
-          "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(), "transform"_a.none(),
-          "material"_a, "prototype"_a)
+          "mesh"_a, "material"_a, "prototype"_a)
       .def(
           "add_shape",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, const OptionalMatrix& transform,
@@ -278,6 +274,18 @@ nb::tuple tessellated(const std::string& type, const nb::dict& values, const std
                         to_numpy(std::move(mesh.uvs), 2));
 }
 
+void bind_meshes(nb::module_& lower) {
+  nb::class_<PlacedMesh>(lower, "PlacedMesh", "A mesh where it stands, which many scenes may show.");
+  lower.def(
+      "place_mesh",
+      [](const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
+         const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
+         const std::optional<Rows<float, 4>>& colors, const OptionalMatrix& transform) {
+        return place_mesh(to_arrays(positions, indices, normals, uvs, colors), transform);
+      },
+      "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(), "transform"_a.none());
+}
+
 void bind_lamps(nb::module_& lower) {
   lower.def(
       "lamp_power",
@@ -327,6 +335,14 @@ void bind_lower(nb::module_& module) {
   bind_view(builder);
 
   bind_lamps(lower);
+  bind_meshes(lower);
+  lower.def(
+      "with_camera",
+      [](const Block& block, const std::string& type, const nb::dict& values, double width, double height) {
+        return with_camera(block, type, to_values(values), {width, height});
+      },
+      "block"_a, "type"_a, "values"_a, "width"_a, "height"_a,
+      "The block seen through another camera, of the kind that it has; None if the camera is of another kind.");
   lower.attr("SOLIDS") = names_of(Solids{});
   lower.def("tessellate", &tessellated, "type"_a, "values"_a, "newell"_a.none(),
             "A shape of SOLIDS as (positions, indices, normals or None, uvs); a teapot from (512, 3) control points.");

@@ -61,7 +61,31 @@ void move_mesh(const Matrix& m, MeshArrays& mesh) {
   }
 }
 
+template <class T>
+Section section_or_none(std::vector<T> values) {
+  return values.empty() ? Section{} : section_of(std::move(values));
+}
+
+template <class T>
+std::span<const T> values_of(const Section& section) {
+  return {reinterpret_cast<const T*>(section.data), section.size / sizeof(T)};
+}
+
 }  // namespace
+
+PlacedMesh place_mesh(MeshArrays arrays, const std::optional<Matrix>& transform) {
+  if (transform) move_mesh(*transform, arrays);
+  PlacedMesh mesh;
+  for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
+    mesh.bounds.grow(Vec3{arrays.positions[i], arrays.positions[i + 1], arrays.positions[i + 2]});
+  }
+  mesh.positions = section_or_none(std::move(arrays.positions));
+  mesh.indices = section_or_none(std::move(arrays.indices));
+  mesh.normals = section_or_none(std::move(arrays.normals));
+  mesh.uvs = section_or_none(std::move(arrays.uvs));
+  mesh.colors = section_or_none(std::move(arrays.colors));
+  return mesh;
+}
 
 SceneBuilder::SceneBuilder(ColourData colour)
     : spectra_(std::move(colour)),
@@ -206,11 +230,11 @@ uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t li
   return number;
 }
 
-uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place) {
+uint32_t SceneBuilder::add_mesh_lights(std::span<const float> positions, std::span<const uint32_t> indices,
+                                       const MaterialRecord& material, LightPlace place) {
   if (material.emission.index == none) return none;
   const auto first = static_cast<uint32_t>(light_of_primitive_.size());
-  const auto lights =
-      lights_.add_mesh(arrays.positions, arrays.indices, material.emission, material.emits_both_sides != 0, place);
+  const auto lights = lights_.add_mesh(positions, indices, material.emission, material.emits_both_sides != 0, place);
   light_of_primitive_.insert(light_of_primitive_.end(), lights.begin(), lights.end());
   return first;
 }
@@ -223,29 +247,24 @@ uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& m
 }
 
 template <class T>
-Slice<T> SceneBuilder::store(std::vector<T> values) {
-  if (values.empty()) return {};
-  const Slice<T> slice{0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(values.size())};
-  bulk_.push_back(section_of(std::move(values)));
-  return slice;
+Slice<T> SceneBuilder::store(const Section& section) {
+  if (section.size == 0) return {};
+  bulk_.push_back(section);
+  return {0, static_cast<uint32_t>(bulk_.size()), static_cast<uint32_t>(section.size / sizeof(T))};
 }
 
-uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material,
-                                bool prototype) {
-  if (transform) move_mesh(*transform, arrays);
-  Bounds bounds;
-  for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
-    bounds.grow(Vec3{arrays.positions[i], arrays.positions[i + 1], arrays.positions[i + 2]});
-  }
+uint32_t SceneBuilder::add_mesh(const PlacedMesh& placed, uint32_t material, bool prototype) {
+  const auto positions = values_of<float>(placed.positions);
+  const auto indices = values_of<uint32_t>(placed.indices);
   const LightPlace place = {static_cast<uint32_t>(geometries_.size()), none, 0};
-  const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material), place);
+  const uint32_t lights = prototype ? none : add_mesh_lights(positions, indices, materials_.at(material), place);
   Mesh mesh{};
-  mesh.positions = store(std::move(arrays.positions));
-  mesh.indices = store(std::move(arrays.indices));
-  mesh.normals = store(std::move(arrays.normals));
-  mesh.uvs = store(std::move(arrays.uvs));
-  mesh.colors = store(std::move(arrays.colors));
-  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, bounds, prototype);
+  mesh.positions = store<float>(placed.positions);
+  mesh.indices = store<uint32_t>(placed.indices);
+  mesh.normals = store<float>(placed.normals);
+  mesh.uvs = store<float>(placed.uvs);
+  mesh.colors = store<float>(placed.colors);
+  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, placed.bounds, prototype);
 }
 
 template <class Shape>
@@ -262,7 +281,7 @@ uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, co
   const Matrix matrix = transform.value_or(identity_matrix);
   if (type == Sphere::name) return add_analytic(moved(matrix, struct_of<Sphere>(values)), material, prototype);
   if (type == Disk::name) return add_analytic(moved(matrix, struct_of<Disk>(values)), material, prototype);
-  if (type == Rectangle::name) return add_mesh(rectangle_mesh(values), transform, material, prototype);
+  if (type == Rectangle::name) return add_mesh(place_mesh(rectangle_mesh(values), transform), material, prototype);
   throw std::invalid_argument("'" + std::string(type) + "' is no shape of this kind");
 }
 
@@ -316,7 +335,7 @@ uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord&
   world.positions.assign(positions, positions + mesh.positions.count);
   world.indices.assign(indices, indices + mesh.indices.count);
   move_mesh(matrix, world);
-  return add_mesh_lights(world, material, place);
+  return add_mesh_lights(world.positions, world.indices, material, place);
 }
 
 void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission,
@@ -390,8 +409,8 @@ Block SceneBuilder::finish() {
     for (uint32_t c = 0; c < 3; ++c) response[4 * i + c] = static_cast<float>(cmf[3 * i + c] / y_sum);
   }
   if (spectra_.any_textured()) {
-    root_.rgb_nodes = store(spectra_.rgb_nodes());
-    root_.rgb_coefficients = store(spectra_.rgb_table());
+    root_.rgb_nodes = store<float>(section_of(spectra_.rgb_nodes()));
+    root_.rgb_coefficients = store<float>(section_of(spectra_.rgb_table()));
   }
   root_.any_mipmap = textures_.any_mipmap() ? 1u : 0u;
   RootWriter writer;
