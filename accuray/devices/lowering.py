@@ -165,10 +165,15 @@ class _Lowering:
 
     def _picture(self, pixels: NDArray[Any]) -> int:
         """The builder's number of a picture; those of equal content share one."""
-        digest = self.kept.part("digest", (pixels,), None, lambda: hashlib.sha256(pixels.data).digest())
+        from accuray._core import lower as core
+
+        def shared() -> tuple[bytes, Any]:
+            return hashlib.sha256(pixels.data).digest(), core.Picture(pixels)
+
+        digest, picture = self.kept.part("picture", (pixels,), None, shared)
         key = (pixels.dtype.str, pixels.shape, digest)
         if key not in self._pictures:
-            self._pictures[key] = self.builder.add_picture(pixels)
+            self._pictures[key] = self.builder.add_picture(picture)
         return self._pictures[key]
 
     def _textured(self, param: schemas.Param, use: TextureUse) -> Any:

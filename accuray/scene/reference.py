@@ -49,8 +49,9 @@ unknown one is an error that names the nearest known one.
   the target), or a list of such steps applied in order. A scale is one number or three; a negative one mirrors. What
   is made of triangles may be sheared and stretched; spheres, disks and instances may not.
 - **Keys**: what says "or keys" may change with time:
-  `{{keys = [{{time = 0, value = 1}}, {{time = "500 ms", value = 2}}], interpolation = "linear"}}`, or {others}. Times count from frame 0, in s. The value holds for the whole frame; before
-  the first key and after the last it stays what it is there. [Animation](animation.md) says more.
+  `{{keys = [{{time = 0, value = 1}}, {{time = "500 ms", value = 2}}], interpolation = "linear"}}`, or {others}.
+  Times are seconds since frame 0. The value holds for the whole frame; before the first key and after the last it
+  stays what it is there. [Animation](animation.md) says more.
 - **Arrays**: positions, normals and uvs are lists of rows; faces are lists of vertex indices that count from 0.
 
 ## Spectra

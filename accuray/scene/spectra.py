@@ -66,10 +66,7 @@ def parse_spectrum(param: Param, value: Any, where: Where, scope: Scope) -> Spec
             raise where.error(f"is {_article(value.role)}, not {_article(param.role)}", value=value)
         spectrum = value
     elif is_keyed(value):
-        spectrum = resolve_keyed(
-            param, value, where, scope, lambda item, place: parse_spectrum(param, item, place, scope)
-        )
-        return spectrum
+        return _from_keys(reading, value)
     elif isinstance(value, dict):
         return _from_table(reading, value)
     elif isinstance(value, str):
@@ -120,6 +117,16 @@ def _allowed(param: Param) -> str:
         "index": "a number, the name of a glass or of a spectrum in [spectra], or a table",
     }
     return examples[param.role]
+
+
+def _from_keys(reading: _Reading, value: dict[str, Any]) -> Spectrum:
+    param, scope = reading.param, reading.scope
+
+    def plain(item: Any, place: Where) -> Spectrum:
+        return parse_spectrum(param, item, place, scope)
+
+    spectrum: Spectrum = resolve_keyed(param, value, reading.where, scope, plain)
+    return spectrum
 
 
 def _from_text(reading: _Reading, text: str) -> Spectrum:

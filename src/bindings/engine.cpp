@@ -146,6 +146,9 @@ void bind_engine(nb::module_& module) {
           },
           "block"_a, "same_shapes"_a.none() = nullptr,
           "same_shapes: a scene whose shapes are the same, bit for bit; its acceleration structure is used.")
+      .def_prop_ro(
+          "structure", [](const LoadedScene& scene) { return reinterpret_cast<uintptr_t>(scene.shapes.get()); },
+          "The same number for scenes that share their acceleration structure.")
       .def_prop_ro("accel_bytes", [](const LoadedScene& scene) { return scene.accel.bytes(); })
       .def_prop_ro("lights", [](const LoadedScene& scene) { return scene.view.root->lights.count; });
   nb::class_<Pass>(engine, "Pass")

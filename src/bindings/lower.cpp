@@ -125,8 +125,10 @@ void bind_textures(nb::class_<SceneBuilder>& builder) {
   builder
       .def(
           "add_picture",
-          [](SceneBuilder& b, const Pixels& pixels) { return b.textures().add_picture(to_picture(pixels)); },
-          "pixels"_a, "(height, width, channels) of uint8, uint16, float16 or float32; it must not change.")
+          [](SceneBuilder& b, std::shared_ptr<SharedPicture> picture) {
+            return b.textures().add_picture(std::move(picture));
+          },
+          "picture"_a)
       .def(
           "add_texture",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, std::optional<uint32_t> picture,
@@ -274,7 +276,12 @@ nb::tuple tessellated(const std::string& type, const nb::dict& values, const std
                         to_numpy(std::move(mesh.uvs), 2));
 }
 
-void bind_meshes(nb::module_& lower) {
+void bind_shared(nb::module_& lower) {
+  nb::class_<SharedPicture>(lower, "Picture", "A picture with what was made of it, which many scenes may show.")
+      .def(
+          "__init__",
+          [](SharedPicture* self, const Pixels& pixels) { new (self) SharedPicture{to_picture(pixels), {}, {}}; },
+          "pixels"_a, "(height, width, channels) of uint8, uint16, float16 or float32; it must not change.");
   nb::class_<PlacedMesh>(lower, "PlacedMesh", "A mesh where it stands, which many scenes may show.");
   lower.def(
       "place_mesh",
@@ -335,7 +342,7 @@ void bind_lower(nb::module_& module) {
   bind_view(builder);
 
   bind_lamps(lower);
-  bind_meshes(lower);
+  bind_shared(lower);
   lower.def(
       "with_camera",
       [](const Block& block, const std::string& type, const nb::dict& values, double width, double height) {
