@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from accuray.devices.kept import Kept, lowered_tables, same, shapes_alone
+from accuray.devices.kept import Kept, lowered_tables, same, shapes_alone, stands_alone
 from accuray.devices.lowering import MeshReport, lower, with_camera
 from accuray.film import Film
 from accuray.scene import Scene
@@ -96,18 +96,19 @@ def _load_after(scene: Scene, before: LoadedScene | None) -> LoadedScene:
 
     tables = lowered_tables(scene)
     parts = Kept(None if before is None else before.parts)
+    alone = all(map(stands_alone, scene.shapes.values()))
     others = [name for name in tables if name != "camera"]
-    if before is not None and all(same(tables[name], before.tables[name]) for name in others):
+    if before is not None and alone and all(same(tables[name], before.tables[name]) for name in others):
         block = before.block if same(tables["camera"], before.tables["camera"]) else with_camera(scene, before.block)
         if block is not None:
             parts.keep_all()
-            return LoadedScene(engine.LoadedScene(block, before.core), before.reports, tables, block, parts)
+            return LoadedScene(engine.LoadedScene(block, before.core, True), before.reports, tables, block, parts)
     block, reports = lower(scene, parts)
     parts.release()
     parts.count("tables", is_built=True)
-    is_same = before is not None and same(shapes_alone(tables), shapes_alone(before.tables))
+    is_same = before is not None and alone and same(shapes_alone(tables), shapes_alone(before.tables))
     parts.count("structure", is_built=not is_same)
-    core = engine.LoadedScene(block, before.core if before is not None and is_same else None)
+    core = engine.LoadedScene(block, None if before is None else before.core, is_same)
     return LoadedScene(core, reports, tables, block, parts)
 
 

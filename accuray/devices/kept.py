@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 
 from accuray.scene import Scene, Spectrum
+from accuray.scene import schema as schemas
+from accuray.scene.identity import DISPLAY_ONLY
 from accuray.scene.photometry import Photometry
 from accuray.scene.textures import TextureUse
 
+PICTURE = ("width", "height")
 PLAIN = (bool, int, float, str, bytes, Path, Spectrum, TextureUse)
 """Types whose values are the same if they compare equal."""
 
@@ -56,11 +59,15 @@ class Kept:
 
 
 def lowered_tables(scene: Scene) -> dict[str, Any]:
-    """What the lowered scene depends on, by sections; the camera by itself."""
-    film = {key: scene.film[key] for key in ("unit", "hide_environment")}
+    """What the lowered scene depends on, by sections; the camera, with the size of its picture, by itself."""
+    film, render = (
+        {key: value for key, value in table.items() if key not in (*DISPLAY_ONLY[name], *PICTURE)}
+        for name, table in (("film", scene.film), ("render", scene.render))
+    )
     return {
-        "camera": [scene.camera, scene.film["width"], scene.film["height"]],
+        "camera": [scene.camera, *(scene.film[key] for key in PICTURE)],
         "film": film,
+        "render": render,
         "filter": scene.filter,
         "integrator": scene.integrator,
         "textures": scene.textures,
@@ -76,6 +83,13 @@ def shapes_alone(tables: dict[str, Any]) -> dict[str, Any]:
         name: {key: value for key, value in table.items() if key != "material"}
         for name, table in tables["shapes"].items()
     }
+
+
+def stands_alone(table: dict[str, Any]) -> bool:
+    """Are the triangles of a shape its own affair? Not if it reads a texture, or is measured in the camera's pixels."""
+    params = schemas.current().family("shape").types[table["type"]].params
+    in_pixels = any(param.unit == "px" and table[param.name] is not None for param in params)
+    return not in_pixels and not any(isinstance(value, TextureUse) for value in table.values())
 
 
 def same(a: Any, b: Any) -> bool:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from accuray import data
 from accuray.devices.emitters import spread_emissions
-from accuray.devices.kept import Kept
+from accuray.devices.kept import Kept, stands_alone
 from accuray.devices.lights import LightLowering, matrix
 from accuray.devices.materials import MaterialLowering
 from accuray.devices.rgb_table import rgb_table
@@ -46,7 +46,7 @@ def with_camera(scene: Scene, block: Any) -> Any | None:
 
     lowering, camera, film = _Lowering(scene), scene.camera, scene.film
     params = schemas.current().family("camera").types[camera["type"]].params
-    if any(param.kind not in ("float", "vec", "enum", "int", "bool") for param in params):
+    if any(camera[p.name] is not None and p.kind not in ("float", "vec", "enum", "int", "bool") for p in params):
         return None
     values = lowering._values("camera", camera)
     change = partial(core.with_camera, block, camera["type"], values, film["width"], film["height"])
@@ -225,7 +225,7 @@ class _Lowering:
         from accuray._core import lower as core
 
         sources: list[Any] = []
-        options: list[Any] = [self._reads_colors]
+        options: list[Any] = [self._reads_colors, None if stands_alone(table) else object()]
         for key, value in table.items():
             if isinstance(value, np.ndarray) and key != "transform":
                 sources.append(value)

@@ -35,8 +35,10 @@ def fill_from_file(type_: Type, values: dict[str, Any], path: Path, where: Where
     if key not in scope.meshes:
         arrays = _readers.read(path, where)
         for param in type_.params:
-            if param.kind == "array" and param.unit == "m" and arrays.get(param.name) is not None:
-                arrays[param.name] = scale_to_metres(arrays[param.name], where.source.length_unit)
+            if param.kind == "array" and arrays.get(param.name) is not None:
+                if param.unit == "m":
+                    arrays[param.name] = scale_to_metres(arrays[param.name], where.source.length_unit)
+                arrays[param.name].flags.writeable = False
         scope.meshes[key] = arrays
     arrays = scope.meshes[key]
     for param in type_.params:

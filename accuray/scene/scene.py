@@ -113,7 +113,8 @@ class Scene:
         """The scene at another frame, which may lie between whole ones: its time is ``frame`` / ``animation.fps``.
 
         It has the values of ``accuray.load(..., frame=frame)``, but files are not read again, and a device that has
-        rendered one frame rebuilds for the next only what changed. Raises SceneError.
+        rendered one frame rebuilds for the next only what changed. It is made from what was loaded: a copy with other
+        tables (``dataclasses.replace``) does not pass them on. Raises SceneError.
         """
         if self.resident.scope is not None:
             return _resolved(self.resident, frame)

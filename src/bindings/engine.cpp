@@ -136,16 +136,21 @@ void bind_engine(nb::module_& module) {
   nb::class_<LoadedScene>(engine, "LoadedScene")
       .def(
           "__init__",
-          [](LoadedScene* self, const Block& block, const LoadedScene* same_shapes) {
+          [](LoadedScene* self, const Block& block, const LoadedScene* before, bool same_shapes) {
             const nb::gil_scoped_release release;
-            if (same_shapes == nullptr) {
-              new (self) LoadedScene(block);
+            if (before != nullptr && same_shapes) {
+              new (self) LoadedScene(LoadedScene::with_shapes_of(*before, block));
             } else {
-              new (self) LoadedScene(block, *same_shapes);
+              new (self) LoadedScene(block, before);
             }
           },
-          "block"_a, "same_shapes"_a.none() = nullptr,
-          "same_shapes: a scene whose shapes are the same, bit for bit; its acceleration structure is used.")
+          "block"_a, "before"_a.none() = nullptr, "same_shapes"_a = false,
+          "before: an earlier frame, parts of whose acceleration structure may serve; all of it with same_shapes, "
+          "which "
+          "says that the shapes are the same, bit for bit.")
+      .def_prop_ro(
+          "built_prototypes", [](const LoadedScene& scene) { return scene.accel.built_prototypes(); },
+          "How many structures were made over what instances show.")
       .def_prop_ro(
           "structure", [](const LoadedScene& scene) { return reinterpret_cast<uintptr_t>(scene.shapes.get()); },
           "The same number for scenes that share their acceleration structure.")

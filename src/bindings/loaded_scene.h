@@ -11,21 +11,27 @@ namespace accuray::bindings {
 
 // An acceleration structure with the sections that it reads: those of the block that it was first built for.
 struct BuiltShapes {
-  explicit BuiltShapes(const Block& lowered) : block(lowered), accel(block.view()) {}
+  BuiltShapes(const Block& lowered, const BuiltShapes* before)
+      : block(lowered), accel(block.view(), before == nullptr ? nullptr : &before->accel) {}
   Block block;
   EmbreeScene accel;
 };
 
 struct LoadedScene {
-  explicit LoadedScene(const Block& lowered) : LoadedScene(lowered, std::make_shared<const BuiltShapes>(lowered)) {}
+  // `before`: an earlier frame, parts of whose structure may serve; null: none.
+  LoadedScene(const Block& lowered, const LoadedScene* before)
+      : LoadedScene(lowered,
+                    std::make_shared<const BuiltShapes>(lowered, before == nullptr ? nullptr : before->shapes.get())) {}
   // `other` shows the same shapes, bit for bit, with whatever materials, lights and view.
-  LoadedScene(const Block& lowered, const LoadedScene& other) : LoadedScene(lowered, other.shapes) {
-    const Root& mine = *view.root;
+  static LoadedScene with_shapes_of(const LoadedScene& other, const Block& lowered) {
+    LoadedScene scene(lowered, other.shapes);
+    const Root& mine = *scene.view.root;
     const Root& theirs = *other.view.root;
     if (mine.geometries.count != theirs.geometries.count || mine.top_geometries != theirs.top_geometries ||
         mine.instances.count != theirs.instances.count) {
       throw std::invalid_argument("the scenes do not have the same shapes");
     }
+    return scene;
   }
 
   Block block;

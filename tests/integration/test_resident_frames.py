@@ -12,6 +12,8 @@ import pytest
 
 import accuray
 from accuray import devices
+from accuray.devices.kept import same, stands_alone
+from accuray.scene.textures import TextureUse
 
 PYRAMID = "v 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nv 0.5 1 -0.5\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 4 3 2 1\n"
 FRAMES = (0, 3, 7)
@@ -101,6 +103,8 @@ def test_only_what_changed_is_built_and_the_bits_are_those_of_the_frame_alone(ca
         }
         assert total == ALL
         held.append(loaded)
+        # What the instance shows is never built twice.
+        assert loaded.core.built_prototypes == (0 if "structure" in expected and frame != FRAMES[0] else 1)
         image = accuray.render(at, spp=4)
         alone = accuray.render(accuray.Scene.from_dict(description(**changes), folder=folder, frame=frame), spp=4)
         assert image.pixels_equal(alone)
@@ -124,6 +128,21 @@ def test_frames_in_any_order_have_the_same_bits(folder: Path) -> None:
         for frame in order:
             film = accuray.render(scene.at(frame), spp=4).film
             assert film.identical(films.setdefault(frame, film))
+
+
+def test_what_depends_on_other_things_is_not_kept() -> None:
+    """A shape that reads a texture, or is measured in pixels, is not its own affair."""
+    ball = accuray.Scene.from_dict(
+        {"materials": {"m": {"type": "diffuse"}}, "shapes": {"b": {"type": "sphere", "material": "m"}}}
+    )
+    table = ball.shapes["b"]
+    assert stands_alone(table)
+    assert not stands_alone({**table, "displacement": TextureUse("bumps")})
+    assert same(table, {**table})
+    assert not same(table, {**table, "transform": object()})
+    arrays = np.zeros(3), np.zeros(3, dtype=np.float32), np.zeros((3, 1))
+    assert same(arrays[0], np.zeros(3))
+    assert not any(same(arrays[0], other) for other in arrays[1:])
 
 
 def test_a_file_is_read_once_for_all_frames(folder: Path) -> None:
