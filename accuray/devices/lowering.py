@@ -14,12 +14,14 @@ from numpy.typing import NDArray
 
 from accuray import data
 from accuray.devices.emitters import spread_emissions
+from accuray.devices.kept import Kept, stands_alone
 from accuray.devices.lights import LightLowering, matrix
 from accuray.devices.materials import MaterialLowering
-from accuray.devices.motion import MOST_OF_SIZE, Eye, Keys, body_keys, camera_keys, moved, shape_box
+from accuray.devices.motion import MOST_OF_SIZE, Eye, Keys, body_keys, camera_in_place, camera_keys, shape_box
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
+from accuray.scene.deformation import deforms
 from accuray.scene.motion import Motion
 from accuray.scene.spectrum import interpolate
 from accuray.scene.textures import CHANNELS, TextureUse
@@ -31,13 +33,30 @@ Values = dict[str, Any]
 MeshReport = dict[str, Any]
 
 
-def lower(scene: Scene) -> tuple[Any, dict[str, MeshReport]]:
+def lower(scene: Scene, kept: Kept | None = None) -> tuple[Any, dict[str, MeshReport]]:
     """The scene's relocatable block (``accuray._core.lower.Block``), and by shape what its mesh lost on the way.
 
-    Raises SceneError for what only the builder can find out, such as a camera that looks at itself.
+    ``kept`` holds the parts of an earlier frame and takes those of this one. Raises SceneError for what only the
+    builder can find out, such as a camera that looks at itself.
     """
-    lowering = _Lowering(scene)
+    lowering = _Lowering(scene, kept)
     return lowering.block(), lowering.reports
+
+
+def with_camera(scene: Scene, block: Any) -> Any | None:
+    """The block of a scene that differs in its camera alone; None if it must be lowered anew. Raises SceneError."""
+    from accuray._core import lower as core
+
+    lowering, camera, film = _Lowering(scene), scene.camera, scene.film
+    params = schemas.current().family("camera").types[camera["type"]].params
+    plain = ("float", "vec", "enum", "int", "bool", "transform")
+    if isinstance(camera["transform"], Motion) or any(
+        camera[p.name] is not None and p.kind not in plain for p in params
+    ):
+        return None
+    values = lowering._values("camera", camera_in_place(camera))
+    change = partial(core.with_camera, block, camera["type"], values, film["width"], film["height"])
+    return lowering._guard("camera", change)
 
 
 class Triangles(NamedTuple):
@@ -75,10 +94,11 @@ def triangles(scene: Scene, shape: str) -> Triangles:
 class _Lowering:
     """Walks the resolved tables once; names become the numbers that the block uses."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, kept: Kept | None = None) -> None:
         from accuray._core import lower as core
 
         self.scene = scene
+        self.kept = Kept() if kept is None else kept
         self.cmf, self.d65 = colour_arrays()
         self.builder = core.SceneBuilder(self.cmf, self.d65)
         self.solids: tuple[str, ...] = core.SOLIDS
@@ -156,9 +176,15 @@ class _Lowering:
 
     def _picture(self, pixels: NDArray[Any]) -> int:
         """The builder's number of a picture; those of equal content share one."""
-        key = (pixels.dtype.str, pixels.shape, hashlib.sha256(pixels.data).digest())
+        from accuray._core import lower as core
+
+        def shared() -> tuple[bytes, Any]:
+            return hashlib.sha256(pixels.data).digest(), core.Picture(pixels)
+
+        digest, picture = self.kept.part("picture", (pixels,), None, shared)
+        key = (pixels.dtype.str, pixels.shape, digest)
         if key not in self._pictures:
-            self._pictures[key] = self.builder.add_picture(pixels)
+            self._pictures[key] = self.builder.add_picture(picture)
         return self._pictures[key]
 
     def _textured(self, param: schemas.Param, use: TextureUse) -> Any:
@@ -224,43 +250,57 @@ class _Lowering:
             )
 
     def _set_camera(self, camera: Values) -> None:
-        """A transform that holds still goes into the camera's own vectors."""
-        transform = camera["transform"]
-        if transform is not None and not isinstance(transform, Motion):
-            points = np.array([camera["position"], camera["look_at"], camera["up"]], dtype=np.float64)
-            position, look_at, up = moved(transform[None], points)[0]
-            axes = {"position": position, "look_at": look_at, "up": up - transform[:3, 3]}
-            camera = {**camera, **{name: tuple(map(float, vector)) for name, vector in axes.items()}}
-        film = self.scene.film
-        self.builder.set_camera(camera["type"], self._values("camera", camera), film["width"], film["height"])
-        if isinstance(transform, Motion):
-            keys = camera_keys(transform, camera["position"], self._eye)
+        film, motion = self.scene.film, camera["transform"]
+        values = self._values("camera", camera_in_place(camera))
+        self.builder.set_camera(camera["type"], values, film["width"], film["height"])
+        if isinstance(motion, Motion):
+            keys = camera_keys(motion, camera["position"], self._eye)
             self._check_error(keys)
             self.builder.set_camera_motion(keys.rows)
             self._moves = True
 
     def _add_shape(self, name: str, table: Values) -> int:
-        material, transform = self.materials[table["material"]], matrix(table["transform"])
+        material = self.materials[table["material"]]
         number: int
         if table["type"] == "mesh" or table["type"] in self.solids:
+            mesh = self._placed_mesh(name, table)
+            self._boxes[name] = np.array(mesh.box, dtype=np.float64)
+            number = self.builder.add_mesh(mesh, material, table["prototype"])
+        else:
+            self._boxes[name] = shape_box(table)
+            values, transform = self._values("shape", table), matrix(table["transform"])
+            number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
+        return number
+
+    def _placed_mesh(self, name: str, table: Values) -> Any:
+        """The mesh of a shape in its place, which scenes that show the same one share."""
+        from accuray._core import lower as core
+
+        sources: list[Any] = []
+        options: list[Any] = [self._reads_colors, None if stands_alone(table) else object()]
+        for key, value in table.items():
+            if isinstance(value, np.ndarray) and key != "transform":
+                sources.append(value)
+            elif key not in ("material", "prototype", "file"):
+                options.append((key, value.tobytes() if isinstance(value, np.ndarray) else value))
+
+        def place() -> tuple[Any, MeshReport | None]:
+            self.reports.pop(name, None)
             mesh = self.triangles(name, table)
             if not self._reads_colors:
                 mesh = mesh._replace(colors=None)
             segments = 0 if mesh.positions.ndim == 2 else len(mesh.positions) - 1
-            self._moves |= segments > 0
             rows = mesh._replace(
                 positions=mesh.positions.reshape(-1, 3),
                 normals=None if mesh.normals is None else np.ascontiguousarray(mesh.normals).reshape(-1, 3),
             )
-            number = self.builder.add_mesh(*rows, transform, material, table["prototype"], segments)
-            positions = rows.positions
-        else:
-            values = self._values("shape", table)
-            number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
-            positions = None
-        if table["prototype"]:
-            self._boxes[name] = shape_box(table, positions)
-        return number
+            return core.place_mesh(*rows, matrix(table["transform"]), segments), self.reports.get(name)
+
+        self._moves |= deforms(table)
+        placed, report = self.kept.part("mesh", tuple(sources), tuple(options), place)
+        if report is not None:
+            self.reports[name] = report
+        return placed
 
     def triangles(self, name: str, table: Values) -> Triangles:
         """The triangles of a mesh or of one of `solids`."""

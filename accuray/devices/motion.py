@@ -120,18 +120,25 @@ def _pixel_angle(camera: Values, film: Values) -> float:
     return float(pixel / (1.0 + reach * reach))
 
 
-def shape_box(shape: Values, positions: NDArray[np.float32] | None) -> Array:
-    """Low and high corner (2, 3) of a box around a still shape: of a mesh's positions, or else of an analytic shape."""
-    if positions is not None:
-        points = positions.astype(np.float64)
-    elif shape["type"] == "rectangle":
+def camera_in_place(camera: Values) -> Values:
+    """The camera with a transform that holds still in its own vectors; one that moves keeps them."""
+    transform = camera["transform"]
+    if transform is None or isinstance(transform, Motion):
+        return camera
+    points = np.array([camera["position"], camera["look_at"], camera["up"]], dtype=np.float64)
+    position, look_at, up = moved(transform[None], points)[0]
+    axes = {"position": position, "look_at": look_at, "up": up - transform[:3, 3]}
+    return {**camera, **{name: tuple(map(float, vector)) for name, vector in axes.items()}}
+
+
+def shape_box(shape: Values) -> Array:
+    """Low and high corner (2, 3) of a box around a still shape that is no mesh."""
+    if shape["type"] == "rectangle":
         corner, u, v = (np.array(shape[key], dtype=np.float64) for key in ("corner", "edge_u", "edge_v"))
         points = np.array([corner, corner + u, corner + v, corner + u + v])
     else:
         center = np.array(shape["center"], dtype=np.float64)
         points = np.array([center - shape["radius"], center + shape["radius"]])
-    if len(points) == 0:
-        return np.zeros((2, 3))
     box = np.array([points.min(axis=0), points.max(axis=0)])
     if shape["transform"] is None:
         return box

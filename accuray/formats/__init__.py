@@ -78,11 +78,14 @@ def load(
     path: str | PathLike[str],
     overrides: Iterable[str] | Mapping[str, Any] = (),
     roots: Iterable[str | PathLike[str]] = (),
+    *,
+    frame: float | None = None,
 ) -> Scene:
     """Read, merge and validate a scene file, or a model file as a scene: by its own camera, else by one that shows it.
 
     ``overrides`` change values before validation: texts such as ``"film.width=256"`` (the value in TOML syntax,
     else taken as text) or a mapping from dotted keys to values. ``roots`` are folders, besides the scene's own
-    and those in ACCURAY_PATH, that the files named in the scene may lie in. Raises SceneError.
+    and those in ACCURAY_PATH, that the files named in the scene may lie in. ``frame`` is the frame of an animation,
+    by default that of the scene's section ``[animation]``; ``Scene.at`` gives further ones. Raises SceneError.
     """
-    return load_scene(path, SCENE_READERS, MODEL_READERS, overrides, roots)
+    return load_scene(path, SCENE_READERS, MODEL_READERS, overrides, roots, frame)

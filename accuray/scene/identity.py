@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import weakref
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -101,7 +102,22 @@ def _value(value: Any) -> Any:
         return {"texture": value.texture, "scale": value.scale.hex(), "channel": value.channel}
     if isinstance(value, Path):
         return {"sha256": _file_hash(value)}
-    return {"dtype": value.dtype.str, "shape": list(value.shape), "sha256": hashlib.sha256(value).hexdigest()}
+    return {"dtype": value.dtype.str, "shape": list(value.shape), "sha256": _array_hash(value)}
+
+
+_array_hashes: dict[int, str] = {}
+"""Of arrays that cannot change, while they live: frames of an animation share them."""
+
+
+def _array_hash(array: Any) -> str:
+    key = id(array)
+    if key not in _array_hashes:
+        digest = hashlib.sha256(array).hexdigest()
+        if array.flags.writeable:
+            return digest
+        _array_hashes[key] = digest
+        weakref.finalize(array, _array_hashes.pop, key, None)
+    return _array_hashes[key]
 
 
 def _file_hash(path: Path) -> str:

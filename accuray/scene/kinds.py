@@ -17,7 +17,7 @@ from accuray.scene.arrays import parse_array
 from accuray.scene.deformation import keyed_files, resolve_moving
 from accuray.scene.errors import Where
 from accuray.scene.images import parse_pixels
-from accuray.scene.keys import is_keyed
+from accuray.scene.keys import is_keyed, resolve_keyed
 from accuray.scene.motion import KEYS, parse_motion
 from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
 from accuray.scene.schema import Param
@@ -29,6 +29,9 @@ from accuray.scene.transforms import parse_transform
 VOCABULARIES: dict[str, Callable[[], list[str]]] = {"metal": metal_names}
 """Text parameters whose role (or name) stands here take a name out of the data that come with the renderer."""
 
+KEYED_ELSEWHERE = ("spectrum", "transform")
+"""Kinds whose own parsers know keys: spectra have names, which keys may stand behind."""
+
 ABSOLUTE = "absolute"
 """Role of a length whose bare numbers are metres whatever the file's length_unit says (a lens in a model in km)."""
 
@@ -37,6 +40,12 @@ def resolve_value(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     """The canonical value of a parameter that the scene gives. Raises SceneError."""
     if names_texture(value):
         return parse_use(param, value, where, scope)
+    if is_keyed(value) and param.kind not in KEYED_ELSEWHERE:
+        return resolve_keyed(param, value, where, scope, partial(_plain, param, scope))
+    return _RESOLVERS[param.kind](param, value, where, scope)
+
+
+def _plain(param: Param, scope: Scope, value: Any, where: Where) -> Any:
     return _RESOLVERS[param.kind](param, value, where, scope)
 
 
@@ -120,7 +129,10 @@ def _transform(param: Param, value: Any, where: Where, scope: Scope) -> Any:
 def _array(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     if is_keyed(value) and param.animatable:
         return resolve_moving(value, where, scope, partial(parse_array, param))
-    return parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
+    if where.path not in scope.arrays:
+        parsed = parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
+        scope.arrays[where.path] = parsed
+    return scope.arrays[where.path]
 
 
 def _reference(param: Param, value: Any, where: Where, scope: Scope) -> str | list[str] | TextureUse:

@@ -31,12 +31,30 @@ def fill_from_file(
 ) -> dict[str, Any]:
     """Read a file, or one for each key, into the array parameters of ``type_`` and return the first reader's report.
 
-    Coordinates in the file are in the length unit of the scene file that names it.
+    Coordinates in the file are in the length unit of the scene file that names it. A file that several shapes or
+    frames name is read once.
     """
-    arrays = _readers.read(file, where) if isinstance(file, Path) else arrays_over_shutter(file, _readers.read, scope)
+
+    def read(path: Path, place: Where) -> dict[str, Any]:
+        key = path, place.source.length_unit
+        if key not in scope.meshes:
+            scope.meshes[key] = _arrays_in_metres(type_, path, place)
+        return scope.meshes[key]
+
+    arrays = read(file, where) if isinstance(file, Path) else arrays_over_shutter(file, read, scope)
     for param in type_.params:
         if param.kind == "array" and arrays.get(param.name) is not None:
-            array = arrays[param.name]
-            values[param.name] = scale_to_metres(array, where.source.length_unit) if param.unit == "m" else array
+            values[param.name] = arrays[param.name]
     report: dict[str, Any] = arrays.get("report") or {}
     return report
+
+
+def _arrays_in_metres(type_: Type, path: Path, where: Where) -> dict[str, Any]:
+    """What a file holds, no longer writable."""
+    arrays = _readers.read(path, where)
+    for param in type_.params:
+        if param.kind == "array" and arrays.get(param.name) is not None:
+            if param.unit == "m":
+                arrays[param.name] = scale_to_metres(arrays[param.name], where.source.length_unit)
+            arrays[param.name].flags.writeable = False
+    return arrays

@@ -132,8 +132,10 @@ void bind_textures(nb::class_<SceneBuilder>& builder) {
   builder
       .def(
           "add_picture",
-          [](SceneBuilder& b, const Pixels& pixels) { return b.textures().add_picture(to_picture(pixels)); },
-          "pixels"_a, "(height, width, channels) of uint8, uint16, float16 or float32; it must not change.")
+          [](SceneBuilder& b, std::shared_ptr<SharedPicture> picture) {
+            return b.textures().add_picture(std::move(picture));
+          },
+          "picture"_a)
       .def(
           "add_texture",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, std::optional<uint32_t> picture,
@@ -192,15 +194,10 @@ void bind_surfaces(nb::class_<SceneBuilder>& builder) {
           "type"_a, "values"_a, "header"_a, "emission"_a.none())
       .def(
           "add_mesh",
-          [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
-             const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
-             const std::optional<Rows<float, 4>>& colors, const OptionalMatrix& transform, uint32_t material,
-             bool prototype, uint32_t segments) {
-            MeshArrays arrays = to_arrays(positions, indices, normals, uvs, colors, segments);
-            return b.add_mesh(std::move(arrays), transform, material, prototype);
+          [](SceneBuilder& b, const PlacedMesh& mesh, uint32_t material, bool prototype) {
+            return b.add_mesh(mesh, material, prototype);
           },
-          "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(), "transform"_a.none(),
-          "material"_a, "prototype"_a, "segments"_a = 0)
+          "mesh"_a, "material"_a, "prototype"_a)
       .def(
           "add_shape",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, const OptionalMatrix& transform,
@@ -300,6 +297,32 @@ nb::tuple tessellated(const std::string& type, const nb::dict& values, const std
                         to_numpy(std::move(mesh.uvs), 2));
 }
 
+void bind_shared(nb::module_& lower) {
+  nb::class_<SharedPicture>(lower, "Picture", "A picture with what was made of it, which many scenes may show.")
+      .def(
+          "__init__",
+          [](SharedPicture* self, const Pixels& pixels) { new (self) SharedPicture{to_picture(pixels), {}, {}}; },
+          "pixels"_a, "(height, width, channels) of uint8, uint16, float16 or float32; it must not change.");
+  nb::class_<PlacedMesh>(lower, "PlacedMesh", "A mesh where it stands, which many scenes may show.")
+      .def_prop_ro(
+          "box",
+          [](const PlacedMesh& mesh) {
+            const Vec3 low = mesh.bounds.empty() ? Vec3{0, 0, 0} : mesh.bounds.low;
+            const Vec3 high = mesh.bounds.empty() ? Vec3{0, 0, 0} : mesh.bounds.high;
+            return std::array<std::array<float, 3>, 2>{{{low.x, low.y, low.z}, {high.x, high.y, high.z}}};
+          },
+          "Low and high corner around it, whatever form it takes.");
+  lower.def(
+      "place_mesh",
+      [](const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
+         const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
+         const std::optional<Rows<float, 4>>& colors, const OptionalMatrix& transform, uint32_t segments) {
+        return place_mesh(to_arrays(positions, indices, normals, uvs, colors, segments), transform);
+      },
+      "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(), "transform"_a.none(),
+      "segments"_a = 0);
+}
+
 void bind_lamps(nb::module_& lower) {
   lower.def(
       "lamp_power",
@@ -349,6 +372,14 @@ void bind_lower(nb::module_& module) {
   bind_view(builder);
 
   bind_lamps(lower);
+  bind_shared(lower);
+  lower.def(
+      "with_camera",
+      [](const Block& block, const std::string& type, const nb::dict& values, double width, double height) {
+        return with_camera(block, type, to_values(values), {width, height});
+      },
+      "block"_a, "type"_a, "values"_a, "width"_a, "height"_a,
+      "The block seen through another camera, of the kind that it has; None if the camera is of another kind.");
   lower.attr("SOLIDS") = names_of(Solids{});
   lower.def("tessellate", &tessellated, "type"_a, "values"_a, "newell"_a.none(),
             "A shape of SOLIDS as (positions, indices, normals or None, uvs); a teapot from (512, 3) control points.");

@@ -48,19 +48,6 @@ MeshArrays rectangle_mesh(const Values& values) {
   return mesh;
 }
 
-// Applies a transform to a mesh; mirroring turns the winding around so that the front side stays the front side.
-void move_mesh(const Matrix& m, MeshArrays& mesh) {
-  transform_array<true>(m, mesh.positions);
-  if (is_similarity(m)) {
-    transform_array<false>(m, mesh.normals);
-  } else {
-    transform_normals(m, mesh.normals);
-  }
-  if (determinant(m) < 0.0) {
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-  }
-}
-
 }  // namespace
 
 SceneBuilder::SceneBuilder(ColourData colour)
@@ -207,12 +194,12 @@ uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t li
   return number;
 }
 
-uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place,
-                                       uint32_t motion) {
+uint32_t SceneBuilder::add_mesh_lights(std::span<const float> positions, std::span<const uint32_t> indices,
+                                       const MaterialRecord& material, LightPlace place, uint32_t motion) {
   if (material.emission.index == none) return none;
   const auto first = static_cast<uint32_t>(light_of_primitive_.size());
-  const auto lights = lights_.add_mesh(arrays.positions, arrays.indices, material.emission,
-                                       material.emits_both_sides != 0, place, motion);
+  const auto lights =
+      lights_.add_mesh(positions, indices, material.emission, material.emits_both_sides != 0, place, motion);
   light_of_primitive_.insert(light_of_primitive_.end(), lights.begin(), lights.end());
   return first;
 }
@@ -227,30 +214,24 @@ uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& m
 }
 
 template <class T>
-Slice<T> SceneBuilder::store(std::vector<T> values) {
-  return values.empty() ? Slice<T>{} : store<T>(section_of(std::move(values)));
+Slice<T> SceneBuilder::store(const Section& section) {
+  if (section.size == 0) return {};
+  bulk_.push_back(section);
+  return {0, static_cast<uint32_t>(bulk_.size()), static_cast<uint32_t>(section.size / sizeof(T))};
 }
 
-template <class T>
-Slice<T> SceneBuilder::store(Section section) {
-  bulk_.push_back(std::move(section));
-  return {0, static_cast<uint32_t>(bulk_.size()), static_cast<uint32_t>(bulk_.back().size / sizeof(T))};
-}
-
-uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material,
-                                bool prototype) {
-  if (transform) move_mesh(*transform, arrays);
-  Bounds bounds;
-  for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
-    bounds.grow(Vec3{arrays.positions[i], arrays.positions[i + 1], arrays.positions[i + 2]});
-  }
+uint32_t SceneBuilder::add_mesh(const PlacedMesh& placed, uint32_t material, bool prototype) {
   const LightPlace place = {static_cast<uint32_t>(geometries_.size()), none, 0};
-  const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material), place);
-  Mesh mesh{};
-  mesh.vertices = store<float>(interleave(arrays, mesh));
-  mesh.indices = store(std::move(arrays.indices));
-  mesh.colors = store(std::move(arrays.colors));
-  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, bounds, prototype);
+  const MaterialRecord& shown = materials_.at(material);
+  uint32_t lights = none;
+  if (!prototype && shown.emission.index != none) {
+    lights = add_mesh_lights(positions_of(placed.layout, placed.vertices.data), placed.index_values(), shown, place);
+  }
+  Mesh mesh = placed.layout;
+  mesh.vertices = store<float>(placed.vertices);
+  mesh.indices = store<uint32_t>(placed.indices);
+  mesh.colors = store<float>(placed.colors);
+  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, placed.bounds, prototype);
 }
 
 template <class Shape>
@@ -267,7 +248,7 @@ uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, co
   const Matrix matrix = transform.value_or(identity_matrix);
   if (type == Sphere::name) return add_analytic(moved(matrix, struct_of<Sphere>(values)), material, prototype);
   if (type == Disk::name) return add_analytic(moved(matrix, struct_of<Disk>(values)), material, prototype);
-  if (type == Rectangle::name) return add_mesh(rectangle_mesh(values), transform, material, prototype);
+  if (type == Rectangle::name) return add_mesh(place_mesh(rectangle_mesh(values), transform), material, prototype);
   throw std::invalid_argument("'" + std::string(type) + "' is no shape of this kind");
 }
 
@@ -329,13 +310,12 @@ uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord&
                              motion);
   }
   const Mesh& mesh = *reinterpret_cast<const Mesh*>(parameters);
-  const auto* vertices = reinterpret_cast<const float*>(bulk_.at(mesh.vertices.section - 1).data);
   const auto* indices = reinterpret_cast<const uint32_t*>(bulk_.at(mesh.indices.section - 1).data);
   MeshArrays world;
-  world.positions = positions_of(mesh, vertices);
+  world.positions = positions_of(mesh, bulk_.at(mesh.vertices.section - 1).data);
   world.indices.assign(indices, indices + mesh.indices.count);
   move_mesh(matrix, world);
-  return add_mesh_lights(world, material, place, motion);
+  return add_mesh_lights(world.positions, world.indices, material, place, motion);
 }
 
 void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission,
@@ -427,8 +407,8 @@ Block SceneBuilder::finish() {
     for (uint32_t c = 0; c < 3; ++c) response[4 * i + c] = static_cast<float>(cmf[3 * i + c] / y_sum);
   }
   if (spectra_.any_textured()) {
-    root_.rgb_nodes = store(spectra_.rgb_nodes());
-    root_.rgb_coefficients = store(spectra_.rgb_table());
+    root_.rgb_nodes = store<float>(section_of(spectra_.rgb_nodes()));
+    root_.rgb_coefficients = store<float>(section_of(spectra_.rgb_table()));
   }
   root_.any_mipmap = textures_.any_mipmap() ? 1u : 0u;
   RootWriter writer;

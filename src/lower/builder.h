@@ -18,11 +18,11 @@
 #include "lower/lights.h"
 #include "lower/motion.h"
 #include "lower/parameters.h"
+#include "lower/placed_mesh.h"
 #include "lower/sky_model.h"
 #include "lower/spectra.h"
 #include "lower/textures.h"
 #include "lower/transform.h"
-#include "lower/vertices.h"
 
 namespace accuray {
 
@@ -40,7 +40,7 @@ class SceneBuilder {
   uint32_t add_composition(std::string_view type, Values values, const Values& header,
                            std::optional<SpectrumRef> emission);
   // Each returns the geometry's number. `prototype`: rendered through instances only; these come after all others.
-  uint32_t add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material, bool prototype);
+  uint32_t add_mesh(const PlacedMesh& mesh, uint32_t material, bool prototype);
   uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,
                      uint32_t material, bool prototype);
   void add_instance(uint32_t first, uint32_t count, const std::optional<Matrix>& transform,
@@ -78,12 +78,10 @@ class SceneBuilder {
   uint32_t add_interior(const Values& values);
   // A bulk array in a section of its own; an empty one stays nowhere.
   template <class T>
-  Slice<T> store(std::vector<T> values);
-  template <class T>
-  Slice<T> store(Section section);
+  Slice<T> store(const Section& section);
   // First entry in light_of_primitive for a surface of this material, or none if it does not emit.
-  uint32_t add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place,
-                           uint32_t motion = none);
+  uint32_t add_mesh_lights(std::span<const float> positions, std::span<const uint32_t> indices,
+                           const MaterialRecord& material, LightPlace place, uint32_t motion = none);
   template <class Shape>
   uint32_t add_analytic(const Shape& shape, uint32_t material, bool prototype);
   template <class L>

@@ -15,16 +15,18 @@ constexpr Param segments_param(const char* name, const char* doc, const char* pr
   return {.name = name, .kind = Kind::integer, .doc = doc, .preset = preset, .low = 3, .high = 65536};
 }
 constexpr Param length_param(const char* name, const char* doc, const char* preset) {
-  return {.name = name, .kind = Kind::real, .doc = doc, .preset = preset, .low = 1e-12, .unit = "m"};
+  return {
+      .name = name, .kind = Kind::real, .doc = doc, .preset = preset, .low = 1e-12, .unit = "m", .animatable = true};
 }
 constexpr Param center_param(const char* doc) {
-  return {.name = "center", .kind = Kind::vec, .doc = doc, .preset = "[0, 0, 0]", .unit = "m"};
+  return {.name = "center", .kind = Kind::vec, .doc = doc, .preset = "[0, 0, 0]", .unit = "m", .animatable = true};
 }
 constexpr Param axis_param() {
   return {.name = "axis",
           .kind = Kind::vec,
           .doc = "Direction of the axis that it lies around; any length but zero.",
-          .preset = "[0, 1, 0]"};
+          .preset = "[0, 1, 0]",
+          .animatable = true};
 }
 constexpr Param shading_param() {
   return {.name = "shading",
@@ -44,7 +46,8 @@ struct Cube {
                                                      .doc = "Lengths of the edges along x, y and z.",
                                                      .preset = "[1, 1, 1]",
                                                      .low = 1e-12,
-                                                     .unit = "m"});
+                                                     .unit = "m",
+                                                     .animatable = true});
   }
 };
 
@@ -55,8 +58,18 @@ struct Cylinder {
       "square.";
   static constexpr auto params() {
     return param_list(
-        Param{.name = "start", .kind = Kind::vec, .doc = "Centre of one end.", .preset = "[0, 0, 0]", .unit = "m"},
-        Param{.name = "end", .kind = Kind::vec, .doc = "Centre of the other end.", .preset = "[0, 1, 0]", .unit = "m"},
+        Param{.name = "start",
+              .kind = Kind::vec,
+              .doc = "Centre of one end.",
+              .preset = "[0, 0, 0]",
+              .unit = "m",
+              .animatable = true},
+        Param{.name = "end",
+              .kind = Kind::vec,
+              .doc = "Centre of the other end.",
+              .preset = "[0, 1, 0]",
+              .unit = "m",
+              .animatable = true},
         length_param("radius", "Radius.", "0.5"),
         Param{.name = "caps", .kind = Kind::boolean, .doc = "Whether its ends are closed.", .preset = "true"},
         segments_param("segments", "Segments around.", "96"), shading_param());
