@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from accuray import data
+from accuray.devices.budget import Budget
 from accuray.devices.emitters import spread_emissions
+from accuray.devices.instancing import Instancing
 from accuray.devices.lights import LightLowering, matrix
 from accuray.devices.materials import MaterialLowering
 from accuray.devices.rgb_table import rgb_table
@@ -81,6 +83,10 @@ class _Lowering:
         self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
         kinds = schemas.current().family("texture").types
+        self._budget = Budget(scene.render["compact"])
+        self._instancing = Instancing(scene.shapes)
+        self._prototypes: dict[str, int] = {}
+        self._groups: dict[tuple[str, ...], int] = {}
         self._reads_colors = any(kinds[texture["type"]].reads_colors for texture in scene.textures.values())
         self._spectra: dict[Spectrum, Any] = {}
         self._pictures: dict[tuple[str, tuple[int, ...], bytes], int] = {}
@@ -93,7 +99,10 @@ class _Lowering:
         builder, film = self.builder, self.scene.film
         for name, texture in self.scene.textures.items():
             self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.triangles)
+        shown, nested = self._instancing.shown(), self._instancing.nested()
+        total = self._instancing.total
+        self._guard("shapes", lambda: self._budget.admit_instances(total(shown), total(nested)))
+        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self._instancing, self.triangles)
         materials = self._guard("materials", spread)
         self.materials = MaterialLowering(materials, builder, self._values_of, self._guard).numbers()
         self._add_shapes()
@@ -107,6 +116,7 @@ class _Lowering:
         builder.set_filter(pixel_filter["type"], self._values("filter", pixel_filter))
         builder.set_integrator(integrator["type"], self._values("integrator", integrator))
         builder.set_film(film["unit"], film["hide_environment"])
+        builder.set_compact(self.scene.render["compact"])
         return builder.finish()
 
     def _guard(self, key: str, action: Callable[[], Any]) -> Any:
@@ -171,22 +181,46 @@ class _Lowering:
 
     def _add_shapes(self) -> None:
         """First what the scene shows itself, then the prototypes, group by group, with their instances."""
-        instances = {name: table for name, table in self.scene.shapes.items() if table["type"] == "instance"}
-        others = {name: table for name, table in self.scene.shapes.items() if name not in instances}
-        for name, table in others.items():
-            if not table["prototype"]:
+        for name, table in self.scene.shapes.items():
+            if table["type"] != "instance" and not table["prototype"]:
                 self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
-        groups: dict[tuple[str, ...], int] = {}
-        for name, table in instances.items():
-            members = tuple(table["of"])
-            if members not in groups:
-                numbers = [self._guard(f"shapes.{m}", partial(self._add_shape, m, others[m])) for m in members]
-                groups[members] = numbers[0]
-            material = None if table["material"] is None else self.materials[table["material"]]
-            add = partial(
-                self.builder.add_instance, groups[members], len(members), matrix(table["transform"]), material
-            )
-            self._guard(f"shapes.{name}", add)
+        shown = self._instancing.shown()
+        self.builder.reserve_instances(self._instancing.total(shown))
+        for name in shown:
+            self._guard(f"shapes.{name}", partial(self._add_instances, name))
+        for table in self.scene.shapes.values():
+            if table.get("instances") is not None:
+                table["instances"].forget()
+
+    def _add_instances(self, name: str) -> None:
+        """All instances of groups that an instance shape comes to."""
+        lights = 0
+        for group, count in self._instancing.counts[name].items():
+            number, material = self._group(group.members), self._covering(group.material)
+            lights += count * self.builder.most_lights(number, len(group.members), material)
+        self._budget.admit_lights(lights)
+        for group, rows in self._instancing.copies(name):
+            number, material = self._group(group.members), self._covering(group.material)
+            self.builder.add_instances(number, len(group.members), rows, material)
+
+    def _covering(self, material: str | None) -> int | None:
+        return None if material is None else self.materials[material]
+
+    def _group(self, members: tuple[str, ...]) -> int:
+        """The number of the first of some prototypes that follow each other."""
+        if members not in self._groups:
+            first, *_ = [self._prototype(name) for name in members]
+            self._groups[members] = first
+        return self._groups[members]
+
+    def _prototype(self, name: str) -> int:
+        """A new number for a prototype, whose arrays are in the block once."""
+        if name in self._prototypes:
+            again: int = self.builder.repeat_geometry(self._prototypes[name])
+            return again
+        add = partial(self._add_shape, name, self.scene.shapes[name])
+        self._prototypes[name] = self._guard(f"shapes.{name}", add)
+        return self._prototypes[name]
 
     def _add_shape(self, name: str, table: Values) -> int:
         material, transform = self.materials[table["material"]], matrix(table["transform"])
@@ -195,6 +229,7 @@ class _Lowering:
             mesh = self.triangles(name, table)
             if not self._reads_colors:
                 mesh = mesh._replace(colors=None)
+            self._budget.admit_mesh(mesh)
             number = self.builder.add_mesh(*mesh, transform, material, table["prototype"])
         else:
             values = self._values("shape", table)

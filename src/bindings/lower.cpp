@@ -199,8 +199,19 @@ void bind_surfaces(nb::class_<SceneBuilder>& builder) {
              uint32_t material,
              bool prototype) { return b.add_shape(type, to_values(values), transform, material, prototype); },
           "type"_a, "values"_a, "transform"_a.none(), "material"_a, "prototype"_a)
-      .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(),
-           "material"_a.none());
+      .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(), "material"_a.none())
+      .def("repeat_geometry", &SceneBuilder::repeat_geometry, "geometry"_a)
+      .def("reserve_instances", &SceneBuilder::reserve_instances, "count"_a)
+      .def(
+          "add_instances",
+          [](SceneBuilder& b, uint32_t first, uint32_t count, const Rows<double, 12>& transforms,
+             std::optional<uint32_t> material) {
+            const auto* matrices = reinterpret_cast<const Matrix*>(transforms.data());
+            const nb::gil_scoped_release release;
+            b.add_instances(first, count, {matrices, transforms.shape(0)}, material);
+          },
+          "first"_a, "count"_a, "transforms"_a, "material"_a.none(), "transforms: (N, 12), three rows of four.")
+      .def("most_lights", &SceneBuilder::most_lights, "first"_a, "count"_a, "material"_a.none());
 }
 
 void bind_lights(nb::class_<SceneBuilder>& builder) {
@@ -256,6 +267,7 @@ void bind_view(nb::class_<SceneBuilder>& builder) {
           },
           "type"_a, "values"_a)
       .def("set_film", &SceneBuilder::set_film, "step"_a, "hide_environment"_a)
+      .def("set_compact", &SceneBuilder::set_compact, "compact"_a)
       .def("finish", &SceneBuilder::finish, "The lowered scene; the builder must not be used afterwards.");
 }
 

@@ -19,8 +19,8 @@ struct Exhaustive {
     for (uint32_t i = 0; i < scene->root->instances.count; ++i) {
       const InstanceRecord& instance = scene->instances[i];
       Ray local = ray;
-      local.origin = instance.to_object.point(ray.origin);
-      local.direction = instance.to_object.vector(ray.direction);
+      local.origin = instance.to_world.point_back(ray.origin);
+      local.direction = instance.to_world.vector_back(ray.direction);
       meet(local, instance.first, instance.count, i, hit);
     }
     return hit;

@@ -80,11 +80,11 @@ inline TexturePoint point_on_disk(const Disk& disk, Vec3 point) {
 inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const Surface& surface) {
   const Tagged shape = scene.geometries[hit.geometry].shape;
   const bool instanced = hit.instance != none;
-  const Vec3 point = instanced ? scene.instances[hit.instance].to_object.point(surface.point) : surface.point;
+  const Vec3 point = instanced ? scene.instances[hit.instance].to_world.point_back(surface.point) : surface.point;
   TexturePoint p;
   if (shape.tag == tag_of<Mesh>(Shapes{})) {
     Vec3 normal = surface.normal;
-    if (instanced) normal = normalize(scene.instances[hit.instance].to_object.vector(normal));
+    if (instanced) normal = normalize(scene.instances[hit.instance].to_world.vector_back(normal));
     p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal);
   } else if (shape.tag == tag_of<Sphere>(Shapes{})) {
     const Sphere& sphere = scene.as<Sphere>(shape);

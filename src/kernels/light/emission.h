@@ -26,7 +26,7 @@ inline Hit hit_on_light(const SceneView& scene, uint32_t light, Vec3 point) {
   const Tagged shape = scene.geometries[place.geometry].shape;
   if (shape.tag != tag_of<Mesh>(Shapes{})) return hit;
   const Mesh& mesh = scene.as<Mesh>(shape);
-  if (place.instance != none) point = scene.instances[place.instance].to_object.point(point);
+  if (place.instance != none) point = scene.instances[place.instance].to_world.point_back(point);
   Vec2 b = barycentric(triangle_of(scene, mesh, hit.primitive), point);
   const bool outside = min(b.x, min(b.y, 1.0f - b.x - b.y)) < 0.0f;
   if (outside && scene.lights[light].light.tag == tag_of<QuadLight>(Lights{})) {

@@ -30,7 +30,7 @@ inline BumpStep bump_step(const SceneView& scene, uint32_t texture, Vec3 dpdu, V
 ACCURAY_NOINLINE inline Vec3 bumped_normal(const SceneView& scene, uint32_t texture, float height, Hit hit,
                                            Vec3 shading, TexturePoint p) {
   const auto to_object = [&](Vec3 v) {
-    return hit.instance == none ? v : scene.instances[hit.instance].to_object.vector(v);
+    return hit.instance == none ? v : scene.instances[hit.instance].to_world.vector_back(v);
   };
   const Vec3 along_u = to_object(p.dpdu);
   const Vec3 along_v = to_object(p.dpdv);
