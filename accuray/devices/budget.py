@@ -17,14 +17,14 @@ from typing import Any
 
 from accuray.scene.memory import check_fits, readable
 
-EMBREE_TRIANGLE = 140
-EMBREE_COMPACT = 100
-EMBREE_INSTANCE = 400
+EMBREE_TRIANGLE = 115
+EMBREE_COMPACT = 80
+EMBREE_INSTANCE = 420
 RECORD = 64
 NESTED = 96
 """A transform in double precision, while instances of instances are multiplied out."""
 
-LIGHT = 500
+LIGHT = 300
 SLACK = 64 << 20
 """Bytes that may be claimed before the system is asked again how much there is."""
 
@@ -32,11 +32,12 @@ SLACK = 64 << 20
 class Budget:
     """Adds up what is about to be allocated, and refuses what does not fit.
 
-    What Embree takes comes last, when all arrays are there, so it is owed until then.
+    What Embree takes comes last, when all arrays are there, so it is owed until then. ``claimed``: bytes in all.
     """
 
     def __init__(self, compact: bool) -> None:
         self._triangle = EMBREE_COMPACT if compact else EMBREE_TRIANGLE
+        self.claimed = 0
         self._owed = 0
         self._unseen = 0
 
@@ -56,6 +57,7 @@ class Budget:
         self._admit(0, count * LIGHT, f"{count} lights of instances")
 
     def _admit(self, now: int, later: int, what: str) -> None:
+        self.claimed += now + later
         self._owed += later
         self._unseen += now
         if self._owed + self._unseen > SLACK:

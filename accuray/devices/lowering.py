@@ -83,8 +83,8 @@ class _Lowering:
         self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
         kinds = schemas.current().family("texture").types
-        self._budget = Budget(scene.render["compact"])
-        self._instancing = Instancing(scene.shapes)
+        self.budget = Budget(scene.render["compact"])
+        self.instancing = Instancing(scene.shapes)
         self._prototypes: dict[str, int] = {}
         self._groups: dict[tuple[str, ...], int] = {}
         self._reads_colors = any(kinds[texture["type"]].reads_colors for texture in scene.textures.values())
@@ -99,10 +99,10 @@ class _Lowering:
         builder, film = self.builder, self.scene.film
         for name, texture in self.scene.textures.items():
             self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        shown, nested = self._instancing.shown(), self._instancing.nested()
-        total = self._instancing.total
-        self._guard("shapes", lambda: self._budget.admit_instances(total(shown), total(nested)))
-        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self._instancing, self.triangles)
+        shown, nested = self.instancing.shown(), self.instancing.nested()
+        total = self.instancing.total
+        self._guard("shapes", lambda: self.budget.admit_instances(total(shown), total(nested)))
+        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.instancing, self.triangles)
         materials = self._guard("materials", spread)
         self.materials = MaterialLowering(materials, builder, self._values_of, self._guard).numbers()
         self._add_shapes()
@@ -184,8 +184,8 @@ class _Lowering:
         for name, table in self.scene.shapes.items():
             if table["type"] != "instance" and not table["prototype"]:
                 self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
-        shown = self._instancing.shown()
-        self.builder.reserve_instances(self._instancing.total(shown))
+        shown = self.instancing.shown()
+        self.builder.reserve_instances(self.instancing.total(shown))
         for name in shown:
             self._guard(f"shapes.{name}", partial(self._add_instances, name))
         for table in self.scene.shapes.values():
@@ -195,11 +195,11 @@ class _Lowering:
     def _add_instances(self, name: str) -> None:
         """All instances of groups that an instance shape comes to."""
         lights = 0
-        for group, count in self._instancing.counts[name].items():
+        for group, count in self.instancing.counts[name].items():
             number, material = self._group(group.members), self._covering(group.material)
             lights += count * self.builder.most_lights(number, len(group.members), material)
-        self._budget.admit_lights(lights)
-        for group, rows in self._instancing.copies(name):
+        self.budget.admit_lights(lights)
+        for group, rows in self.instancing.copies(name):
             number, material = self._group(group.members), self._covering(group.material)
             self.builder.add_instances(number, len(group.members), rows, material)
 
@@ -229,7 +229,7 @@ class _Lowering:
             mesh = self.triangles(name, table)
             if not self._reads_colors:
                 mesh = mesh._replace(colors=None)
-            self._budget.admit_mesh(mesh)
+            self.budget.admit_mesh(mesh)
             number = self.builder.add_mesh(*mesh, transform, material, table["prototype"])
         else:
             values = self._values("shape", table)
