@@ -12,6 +12,7 @@ from accuray.scene import Scene, Spectrum
 from accuray.scene import schema as schemas
 from accuray.scene.identity import DISPLAY_ONLY
 from accuray.scene.photometry import Photometry
+from accuray.scene.placements import Transforms
 from accuray.scene.textures import TextureUse
 
 PICTURE = ("width", "height")
@@ -106,6 +107,8 @@ def same(a: Any, b: Any) -> bool:
         return len(a) == len(b) and all(map(same, a, b))
     if isinstance(a, Photometry):
         return same(vars(a), vars(b))
+    if isinstance(a, Transforms):
+        return a.count == b.count and a.sha256 == b.sha256
     if isinstance(a, np.ndarray):
         return a.dtype == b.dtype and a.shape == b.shape and bool(np.array_equal(a, b))
     return False

@@ -13,11 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from accuray import data
+from accuray.devices.budget import Budget
 from accuray.devices.emitters import spread_emissions
+from accuray.devices.instancing import IDENTITY, Instancing, Rows, product
 from accuray.devices.kept import Kept, stands_alone
 from accuray.devices.lights import LightLowering, matrix
 from accuray.devices.materials import MaterialLowering
-from accuray.devices.motion import MOST_OF_SIZE, Eye, Keys, body_keys, camera_in_place, camera_keys, shape_box
+from accuray.devices.motion import (
+    MOST_OF_SIZE,
+    Eye,
+    Keys,
+    body_keys,
+    box_under,
+    camera_in_place,
+    camera_keys,
+    shape_box,
+)
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
@@ -104,6 +115,10 @@ class _Lowering:
         self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
         kinds = schemas.current().family("texture").types
+        self.budget = Budget(scene.render["compact"])
+        self.instancing = Instancing(scene.shapes)
+        self._prototypes: dict[str, int] = {}
+        self._groups: dict[tuple[str, ...], int] = {}
         self._reads_colors = any(kinds[texture["type"]].reads_colors for texture in scene.textures.values())
         self._spectra: dict[Spectrum, Any] = {}
         self._pictures: dict[tuple[str, tuple[int, ...], bytes], int] = {}
@@ -119,7 +134,10 @@ class _Lowering:
         builder, film = self.builder, self.scene.film
         for name, texture in self.scene.textures.items():
             self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.triangles)
+        shown, nested = self.instancing.shown(), self.instancing.nested()
+        total = self.instancing.total
+        self._guard("shapes", lambda: self.budget.admit_instances(total(shown), total(nested)))
+        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.instancing, self.triangles)
         materials = self._guard("materials", spread)
         self.materials = MaterialLowering(materials, builder, self._values_of, self._guard).numbers()
         self._add_shapes()
@@ -134,6 +152,7 @@ class _Lowering:
         builder.set_filter(pixel_filter["type"], self._values("filter", pixel_filter))
         builder.set_integrator(integrator["type"], self._values("integrator", integrator))
         builder.set_film(film["unit"], film["hide_environment"])
+        builder.set_compact(self.scene.render["compact"])
         return builder.finish()
 
     def _guard(self, key: str, action: Callable[[], Any]) -> Any:
@@ -203,43 +222,75 @@ class _Lowering:
         return self.builder.textured_reflectance(texture, use.scale)
 
     def _add_shapes(self) -> None:
-        """First what the scene shows itself and is still, then the prototypes with their instances.
+        """First what the scene shows itself and is still, then the prototypes, group by group, with their instances.
 
-        What moves is an instance of itself. Prototypes come group by group.
+        What moves is an instance of itself.
         """
-        instances = {name: table for name, table in self.scene.shapes.items() if table["type"] == "instance"}
-        others = {name: table for name, table in self.scene.shapes.items() if name not in instances}
-        shown = {name: table for name, table in others.items() if not table["prototype"]}
-        moving = [name for name, table in shown.items() if isinstance(table["transform"], Motion)]
-        for name, table in shown.items():
-            if name not in moving:
+        moving = []
+        for name, table in self.scene.shapes.items():
+            if table["type"] == "instance" or table["prototype"]:
+                continue
+            if isinstance(table["transform"], Motion):
+                moving.append(name)
+            else:
                 self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
         for name in moving:
-            table = {**others[name], "transform": None, "prototype": True}
+            table = {**self.scene.shapes[name], "transform": None, "prototype": True}
             number = self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
-            place = partial(self._add_instance, name, number, [name], others[name]["transform"], None)
-            self._guard(f"shapes.{name}", place)
-        groups: dict[tuple[str, ...], int] = {}
-        for name, table in instances.items():
-            members = tuple(table["of"])
-            if members not in groups:
-                numbers = [self._guard(f"shapes.{m}", partial(self._add_shape, m, others[m])) for m in members]
-                groups[members] = numbers[0]
-            material = None if table["material"] is None else self.materials[table["material"]]
-            place = partial(self._add_instance, name, groups[members], list(members), table["transform"], material)
-            self._guard(f"shapes.{name}", place)
+            self._guard(f"shapes.{name}", partial(self._add_moving, name, number, (name,), IDENTITY, None))
+        shown = self.instancing.shown()
+        self.builder.reserve_instances(self.instancing.total(shown) + len(moving))
+        for name in shown:
+            self._guard(f"shapes.{name}", partial(self._add_instances, name))
+        for table in self.scene.shapes.values():
+            if table.get("instances") is not None:
+                table["instances"].forget()
 
-    def _add_instance(self, name: str, first: int, members: list[str], transform: Any, material: int | None) -> None:
-        if not isinstance(transform, Motion):
-            self.builder.add_instance(first, len(members), matrix(transform), material)
-            return
+    def _add_instances(self, name: str) -> None:
+        """All instances of groups that an instance shape comes to."""
+        lights = 0
+        for group, count in self.instancing.counts[name].items():
+            number, material = self._group(group.members), self._covering(group.material)
+            lights += count * self.builder.most_lights(number, len(group.members), material)
+        self.budget.admit_lights(lights)
+        moves = isinstance(self.scene.shapes[name]["transform"], Motion)
+        for group, rows in self.instancing.copies(name):
+            number, material = self._group(group.members), self._covering(group.material)
+            if moves:
+                self._add_moving(name, number, group.members, rows, material)
+            else:
+                self.builder.add_instances(number, len(group.members), rows, material)
+
+    def _add_moving(self, name: str, first: int, members: tuple[str, ...], rows: Rows, material: int | None) -> None:
+        """A group under each of some transforms (n, 12), all of which move as the shape of this name does."""
         boxes = np.array([self._boxes[member] for member in members])
-        keys = body_keys(transform, np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)]), self._eye)
-        self._check_error(keys)
-        if keys.error > 0.0:
-            self.reports[name] = {**self.reports.get(name, {}), "motion_error": keys.error}
-        self.builder.add_moving_instance(first, len(members), keys.rows, material)
+        around = np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+        for row in rows:
+            keys = body_keys(self.scene.shapes[name]["transform"], box_under(row, around), self._eye)
+            self._check_error(keys)
+            if keys.error > 0.0:
+                self.reports[name] = {**self.reports.get(name, {}), "motion_error": keys.error}
+            self.builder.add_moving_instance(first, len(members), product(keys.rows, row[None]), material)
         self._moves = True
+
+    def _covering(self, material: str | None) -> int | None:
+        return None if material is None else self.materials[material]
+
+    def _group(self, members: tuple[str, ...]) -> int:
+        """The number of the first of some prototypes that follow each other."""
+        if members not in self._groups:
+            first, *_ = [self._prototype(name) for name in members]
+            self._groups[members] = first
+        return self._groups[members]
+
+    def _prototype(self, name: str) -> int:
+        """A new number for a prototype, whose arrays are in the block once."""
+        if name in self._prototypes:
+            again: int = self.builder.repeat_geometry(self._prototypes[name])
+            return again
+        add = partial(self._add_shape, name, self.scene.shapes[name])
+        self._prototypes[name] = self._guard(f"shapes.{name}", add)
+        return self._prototypes[name]
 
     def _check_error(self, keys: Keys) -> None:
         if keys.error > MOST_OF_SIZE:
@@ -289,6 +340,7 @@ class _Lowering:
             mesh = self.triangles(name, table)
             if not self._reads_colors:
                 mesh = mesh._replace(colors=None)
+            self.budget.admit_mesh(mesh)
             segments = 0 if mesh.positions.ndim == 2 else len(mesh.positions) - 1
             rows = mesh._replace(
                 positions=mesh.positions.reshape(-1, 3),

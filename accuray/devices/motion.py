@@ -140,9 +140,12 @@ def shape_box(shape: Values) -> Array:
         center = np.array(shape["center"], dtype=np.float64)
         points = np.array([center - shape["radius"], center + shape["radius"]])
     box = np.array([points.min(axis=0), points.max(axis=0)])
-    if shape["transform"] is None:
-        return box
-    points = moved(shape["transform"][None], _corners(box))[0]
+    return box if shape["transform"] is None else box_under(shape["transform"][:3].reshape(12), box)
+
+
+def box_under(row: Array, box: Array) -> Array:
+    """A box (2, 3) around a box under a transform, (12,): three rows of four."""
+    points = moved(row.reshape(1, 3, 4), _corners(box))[0]
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
@@ -213,7 +216,7 @@ def between_keys(keys: Array, shares: Array) -> Array:
 
 
 def moved(matrices: Array, points: Array) -> Array:
-    """Points (P, 3) under each of matrices (N, 4, 4): (N, P, 3). Without BLAS: the same bits on every machine."""
+    """Points (P, 3) under each of matrices (N, 3 or 4, 4): (N, P, 3). Without BLAS: the same bits on every machine."""
     m = matrices[:, None, :3, :]
     x, y, z = (points[None, :, axis, None] for axis in range(3))
     return np.asarray(m[..., 0] * x + m[..., 1] * y + m[..., 2] * z + m[..., 3])

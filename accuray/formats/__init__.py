@@ -20,6 +20,7 @@ from accuray.scene.images import register_image_reader
 from accuray.scene.meshes import MeshReader, register_reader
 from accuray.scene.models import register_expander
 from accuray.scene.photometry import register_photometry_reader
+from accuray.scene.placements import register_array_reader
 
 if TYPE_CHECKING:
     from accuray.formats.models.model import ModelReader
@@ -58,6 +59,8 @@ MODEL_READERS: dict[str, ModelReader] = {
 for _suffix, _reader in MESH_READERS.items():
     register_reader(_suffix, _reader)
 register_image_reader(image.read)
+register_array_reader(".npy", _late("arrays", "read_npy"))
+register_array_reader(".csv", _late("arrays", "read_csv"))
 register_photometry_reader(".ies", _late("ies", "read"))
 register_expander(partial(_late("models.expanding", "expand"), readers=MODEL_READERS))
 

@@ -48,7 +48,7 @@ def check_together(type_: Type, values: dict[str, Any], where: Where) -> None:
     counts: dict[str, tuple[str, int]] = {}
     params = [param for param in type_.params if param.kind == "array" and values.get(param.name) is not None]
     for param in params:
-        if param.role in (FACES, "pixels"):
+        if param.role in (FACES, "pixels") or param.choices:
             continue
         letter, rows = param.role[0], values[param.name].shape[-2]
         first, expected = counts.setdefault(letter, (param.name, rows))

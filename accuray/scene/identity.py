@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from accuray.scene.deformation import deforms
 from accuray.scene.motion import Motion
+from accuray.scene.placements import Transforms
 from accuray.scene.schema import Schema, Type
 from accuray.scene.spectrum import Spectrum
 from accuray.scene.textures import TextureUse
@@ -100,6 +101,8 @@ def _value(value: Any) -> Any:
         return {"form": value.form, "scale": value.scale.hex(), **fields, **flux}
     if isinstance(value, TextureUse):
         return {"texture": value.texture, "scale": value.scale.hex(), "channel": value.channel}
+    if isinstance(value, Transforms):
+        return {"transforms": value.count, "sha256": value.sha256}
     if isinstance(value, Path):
         return {"sha256": _file_hash(value)}
     return {"dtype": value.dtype.str, "shape": list(value.shape), "sha256": _array_hash(value)}

@@ -150,6 +150,8 @@ def _vec(param: Param) -> Node:
 
 
 def _array(param: Param) -> Node:
+    if param.choices:
+        return {"type": "string"}
     if param.role == "faces":
         indices = {"type": "array", "items": {"type": "integer", "minimum": 0}, "minItems": 3}
         return {"type": "array", "items": indices}

@@ -2,8 +2,8 @@
 
 Canonical values: bool, int, float (metres, radians, ...), tuple of floats (vec), str (enum, text, reference),
 list of str (references to shapes), tuple of str (words), float64 4x4 array (transform; Motion if it changes while the
-shutter is open), float32 and uint32 arrays, Spectrum, Path; pictures (height, width, channels); TextureUse for what a
-texture gives.
+shutter is open), float32 and uint32 arrays, Transforms (of instances), Spectrum, Path; pictures (height, width,
+channels); TextureUse for what a texture gives.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from accuray.scene.errors import Where
 from accuray.scene.images import parse_pixels
 from accuray.scene.keys import is_keyed, resolve_keyed
 from accuray.scene.motion import KEYS, parse_motion
+from accuray.scene.placements import IDS, TRANSFORMS, parse_filed
 from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
 from accuray.scene.schema import Param
 from accuray.scene.scope import SECTION_OF, Scope
@@ -130,9 +131,14 @@ def _array(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     if is_keyed(value) and param.animatable:
         return resolve_moving(value, where, scope, partial(parse_array, param))
     if where.path not in scope.arrays:
-        parsed = parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
-        scope.arrays[where.path] = parsed
+        scope.arrays[where.path] = _plain_array(param, value, where, scope)
     return scope.arrays[where.path]
+
+
+def _plain_array(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    if param.role in (TRANSFORMS, IDS):
+        return parse_filed(param, value, where, scope)
+    return parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
 
 
 def _reference(param: Param, value: Any, where: Where, scope: Scope) -> str | list[str] | TextureUse:
@@ -153,11 +159,11 @@ def _referred(param: Param, name: Any, where: Where, scope: Scope) -> str:
     if not isinstance(name, str):
         raise where.error("is not a name", value=name, allowed=f"the name of a {param.role}")
     section = SECTION_OF[param.role]
-    known = scope.names(section)
-    if name in known:
+    if scope.defines(section, name):
         return name
+    known = scope.names(section)
     for family, other in SECTION_OF.items():
-        if family != param.role and name in scope.names(other):
+        if family != param.role and scope.defines(other, name):
             raise where.error(f"is a {family}, not a {param.role}", value=name, allowed=", ".join(known) or "none")
     raise where.unknown(name, param.role, known)
 

@@ -35,6 +35,11 @@ class Scope:
     arrays: dict[tuple[Key, ...], Any] = field(default_factory=dict)
     clock: Clock = STILL
 
+    def defines(self, section: str, name: str) -> bool:
+        """Is there an object of this name in a section?"""
+        table = self.document.data.get(section)
+        return isinstance(table, dict) and name in table
+
     def names(self, section: str) -> list[str]:
         """Names defined in a section ("materials", "spectra", ...), in the order of the file."""
         table = self.document.data.get(section)

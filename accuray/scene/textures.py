@@ -12,6 +12,7 @@ from accuray.scene.errors import Where
 from accuray.scene.plain import choice, quantity
 from accuray.scene.schema import Param, Schema, Type
 from accuray.scene.scope import Scope
+from accuray.scene.shapes import shown_by
 
 CHANNELS = ("red", "green", "blue", "alpha")
 MAP = "map"
@@ -116,9 +117,9 @@ def check_vertices(textures: Objects, materials: Objects, shapes: Objects, schem
         name: [(part, *use) for part in all_parts(materials, name, schema) for use in uses_of(materials[part])]
         for name in materials
     }
-    for name, shape in shapes.items():
-        for member in shape.get("of") or (name,):
-            for part, key, use in uses[shape["material"] or shapes[member]["material"]]:
+    for name, seen in shown_by(shapes).items():
+        for member, material in sorted(seen):
+            for part, key, use in uses[material]:
                 lack = _lack(types[textures[use.texture]["type"]], shapes[member])
                 if lack is not None:
                     via = f' (shown by "{name}")' if member != name else ""

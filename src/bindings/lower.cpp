@@ -34,8 +34,8 @@ MeshArrays to_arrays(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& i
                      const std::optional<Rows<float, 4>>& colors, uint32_t segments) {
   const size_t rows = positions.shape(0);
   const size_t vertices = rows / (size_t{segments} + 1);
-  if (vertices * (size_t{segments} + 1) != rows || (normals && normals->shape(0) != rows) || (uvs && uvs->shape(0) != vertices) ||
-      (colors && colors->shape(0) != vertices)) {
+  if (vertices * (size_t{segments} + 1) != rows || (normals && normals->shape(0) != rows) ||
+      (uvs && uvs->shape(0) != vertices) || (colors && colors->shape(0) != vertices)) {
     throw std::invalid_argument("normals, uvs and colors need one row for each position");
   }
   MeshArrays arrays{to_vector(positions), to_vector(indices), {}, {}, {}, segments};
@@ -210,7 +210,19 @@ void bind_surfaces(nb::class_<SceneBuilder>& builder) {
           [](SceneBuilder& b, uint32_t first, uint32_t count, const Rows<double, 12>& keys,
              std::optional<uint32_t> material) { b.add_moving_instance(first, count, to_matrices(keys), material); },
           "first"_a, "count"_a, "keys"_a, "material"_a.none(),
-          "keys (K, 12): transforms at equal steps of time, the upper three rows, row by row.");
+          "keys (K, 12): transforms at equal steps of time, the upper three rows, row by row.")
+      .def("repeat_geometry", &SceneBuilder::repeat_geometry, "geometry"_a)
+      .def("reserve_instances", &SceneBuilder::reserve_instances, "count"_a)
+      .def(
+          "add_instances",
+          [](SceneBuilder& b, uint32_t first, uint32_t count, const Rows<double, 12>& transforms,
+             std::optional<uint32_t> material) {
+            const auto* matrices = reinterpret_cast<const Matrix*>(transforms.data());
+            const nb::gil_scoped_release release;
+            b.add_instances(first, count, {matrices, transforms.shape(0)}, material);
+          },
+          "first"_a, "count"_a, "transforms"_a, "material"_a.none(), "transforms: (N, 12), three rows of four.")
+      .def("most_lights", &SceneBuilder::most_lights, "first"_a, "count"_a, "material"_a.none());
 }
 
 void bind_lights(nb::class_<SceneBuilder>& builder) {
@@ -275,6 +287,7 @@ void bind_view(nb::class_<SceneBuilder>& builder) {
           },
           "type"_a, "values"_a)
       .def("set_film", &SceneBuilder::set_film, "step"_a, "hide_environment"_a)
+      .def("set_compact", &SceneBuilder::set_compact, "compact"_a)
       .def("finish", &SceneBuilder::finish, "The lowered scene; the builder must not be used afterwards.");
 }
 

@@ -132,7 +132,8 @@ void EmbreeScene::attach(RTCScene target, uint32_t number, uint32_t id) {
 }
 
 void EmbreeScene::commit(RTCScene target) {
-  rtcSetSceneFlags(target, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(target,
+                   view_.root->compact != 0 ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
   tbb::task_arena arena(1);
   arena.execute([&] { rtcCommitScene(target); });
   check("building the acceleration structure");

@@ -70,7 +70,6 @@ struct GeometryRecord {
 // A copy of the geometries [first, first + count) under a transform.
 struct InstanceRecord {
   Transform to_world;
-  Transform to_object;
   uint32_t first, count;
   uint32_t lights;    // first entry in lights_of_instance, one per geometry; none: nothing emits
   uint32_t material;  // overrides the prototypes' material; none: does not
@@ -82,6 +81,8 @@ struct MotionRecord {
   uint32_t first;
   uint32_t count;  // 2 or more
 };
+
+static_assert(sizeof(InstanceRecord) == 64);  // there may be millions
 
 struct LightRecord {
   Tagged light;
@@ -126,6 +127,7 @@ struct Root {
   uint32_t any_opacity;     // some material lets rays through
   uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
+  uint32_t compact;     // the acceleration structure is to be small rather than fast
   uint32_t any_mipmap;  // some texture asks how much of it a ray stands for
   uint32_t camera_motion;  // index in SceneView::motions; none: the camera is still
   Tagged camera, filter, integrator;

@@ -262,32 +262,52 @@ void SceneBuilder::add_instance(uint32_t first, uint32_t count, const std::optio
       throw std::invalid_argument("transform moves or scales by more than 1e15 or less than 1e-15");
     }
   }
-  InstanceRecord instance{
-      to_transform(matrix), to_transform(inverse(matrix)), first, count, none, material.value_or(none), none};
-  instance.lights = instance_lights(matrix, instance, material);
+  if (instances_.size() >= none - size_t{root_.top_geometries}) throw std::invalid_argument("are too many instances");
+  InstanceRecord instance{to_transform(matrix), first, count, none, material.value_or(none), none};
+  instance.lights = instance_lights(matrix, instance);
   instances_.push_back(instance);
 }
 
 void SceneBuilder::add_moving_instance(uint32_t first, uint32_t count, std::span<const Matrix> keys,
                                        std::optional<uint32_t> material) {
-  InstanceRecord instance{{}, {}, first, count, none, material.value_or(none), motions_.add(keys)};
-  instance.to_world = to_transform(keys.front());
-  float determinant = 0.0f;
-  instance.to_object = inverse_of(instance.to_world, determinant);
-  instance.lights = instance_lights(identity_matrix, instance, material);
+  InstanceRecord instance{to_transform(keys.front()), first, count, none, material.value_or(none), motions_.add(keys)};
+  instance.lights = instance_lights(identity_matrix, instance);
   instances_.push_back(instance);
 }
 
-uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecord& instance,
-                                       std::optional<uint32_t> material) {
+void SceneBuilder::add_instances(uint32_t first, uint32_t count, std::span<const Matrix> transforms,
+                                 std::optional<uint32_t> material) {
+  for (const Matrix& transform : transforms) add_instance(first, count, transform, material);
+}
+
+uint32_t SceneBuilder::repeat_geometry(uint32_t geometry) {
+  const GeometryRecord record = geometries_.at(geometry);
+  const Bounds bounds = bounds_.at(geometry);
+  return add_geometry(record.shape, record.material, none, bounds, true);
+}
+
+uint64_t SceneBuilder::most_lights(uint32_t first, uint32_t count, std::optional<uint32_t> material) const {
+  uint64_t sum = 0;
+  for (uint32_t g = first; g < first + count; ++g) {
+    const GeometryRecord& geometry = geometries_.at(g);
+    if (materials_.at(material.value_or(geometry.material)).emission.index == none) continue;
+    const bool is_mesh = geometry.shape.tag == tag_of<Mesh>(Shapes{});
+    const auto* mesh = reinterpret_cast<const Mesh*>(pool_.words().data() + geometry.shape.offset);
+    sum += is_mesh ? mesh->indices.count / 3 : 1;
+  }
+  return sum;
+}
+
+uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecord& instance) {
   const auto first = static_cast<uint32_t>(lights_of_instance_.size());
   bool any = false;
   for (uint32_t g = instance.first; g < instance.first + instance.count; ++g) {
     const GeometryRecord& geometry = geometries_.at(g);
     const bool moves = instance.motion != none;
     scene_bounds_.grow(moves ? motions_.swept(instance.motion, bounds_.at(g)) : bounds_.at(g).moved(matrix));
-    const uint32_t lights = copied_lights(matrix, materials_.at(material.value_or(geometry.material)),
-                                          {g, static_cast<uint32_t>(instances_.size()), 0}, instance.motion);
+    const uint32_t material = instance.material == none ? geometry.material : instance.material;
+    const LightPlace place = {g, static_cast<uint32_t>(instances_.size()), 0};
+    const uint32_t lights = copied_lights(matrix, materials_.at(material), place, instance.motion);
     any = any || lights != none;
     lights_of_instance_.push_back(lights);
   }
@@ -411,11 +431,11 @@ Block SceneBuilder::finish() {
     root_.rgb_coefficients = store<float>(section_of(spectra_.rgb_table()));
   }
   root_.any_mipmap = textures_.any_mipmap() ? 1u : 0u;
+  root_.instances = store<InstanceRecord>(section_of(std::move(instances_)));
   RootWriter writer;
   root_.materials = writer.append(materials_);
   root_.interiors = writer.append(interiors_);
   root_.geometries = writer.append(geometries_);
-  root_.instances = writer.append(instances_);
   root_.motions = writer.append(motions_.records());
   root_.motion_keys = writer.append(motions_.keys());
   root_.shutter = writer.append(shutter_);

@@ -27,7 +27,8 @@ Section interleave(const MeshArrays& arrays, Mesh& mesh) {
   mesh.uv = arrays.uvs.empty() ? 0u : 3u + mesh.normal;
   mesh.stride = 3u + mesh.normal + (mesh.uv != 0 ? 2u : 0u);
   const size_t size = rows * mesh.stride;
-  if (size > UINT32_MAX) throw std::invalid_argument("has too many vertices: allowed are 4 294 967 295 numbers for all");
+  if (size > UINT32_MAX)
+    throw std::invalid_argument("has too many vertices: allowed are 4 294 967 295 numbers for all");
   if (size == 0) return {};
   auto* values = static_cast<float*>(::operator new((size + room) * sizeof(float), cache_line));
   const std::shared_ptr<const void> owner(values, Release{});

@@ -23,8 +23,8 @@ struct Exhaustive {
         continue;
       }
       Ray local = ray;
-      local.origin = instance.to_object.point(ray.origin);
-      local.direction = instance.to_object.vector(ray.direction);
+      local.origin = instance.to_world.point_back(ray.origin);
+      local.direction = instance.to_world.vector_back(ray.direction);
       meet(local, instance.first, instance.count, i, hit);
     }
     return hit;

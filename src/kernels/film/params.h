@@ -92,7 +92,11 @@ struct RenderCommon {
               .doc = "What the image holds besides its colours. indirect: the light that was scattered more than once "
                      "on its way to the camera.",
               .preset = "[]",
-              .choices = "indirect"});
+              .choices = "indirect"},
+        Param{.name = "compact",
+              .kind = Kind::boolean,
+              .doc = "Keeps the acceleration structure small, at some loss of speed.",
+              .preset = "false"});
   }
 };
 

@@ -169,13 +169,31 @@ struct Rectangle {
 struct Instance {
   static constexpr bool rigid = true;
   static constexpr const char* name = "instance";
-  static constexpr const char* doc = "A copy of prototype shapes under the instance's transform.";
+  static constexpr const char* doc =
+      "A copy of prototype shapes under the instance's transform, or as many copies as `instances` has rows.";
   static constexpr auto params() {
-    return param_list(Param{.name = "of",
-                            .kind = Kind::reference,
-                            .doc = "Name or list of names of prototype shapes.",
-                            .role = "shape",
-                            .required = true});
+    return param_list(
+        Param{.name = "of",
+              .kind = Kind::reference,
+              .doc = "Name or list of names of prototype shapes, which may be instances of others themselves.",
+              .role = "shape",
+              .required = true},
+        Param{.name = "instances",
+              .kind = Kind::array,
+              .doc =
+                  "Transforms, each of a copy: three rows of four numbers, translations in the file's length_unit; "
+                  "an array of shape N x 3 x 4 or N x 12 in a .npy file or from Python, or a CSV file with a line of "
+                  "twelve numbers for each. Turns, mirrors, moves and one scale; `transform` follows.",
+              .unit = "m",
+              .choices = ".npy|.csv",
+              .role = "file or Nx3x4"},
+        Param{.name = "ids",
+              .kind = Kind::array,
+              .doc = "Which one of `of` each row of `instances` shows, counted from 0; by default it shows all of "
+                     "them. A file or array of N whole numbers, or the 13th column of a CSV file of `instances`.",
+              .low = 0,
+              .choices = ".npy|.csv",
+              .role = "file or N"});
   }
 };
 

@@ -112,8 +112,8 @@ inline void to_world(const InstanceRecord& instance, Surface& s) {
 inline void place_on_still(const SceneView& scene, const InstanceRecord& instance, const Ray& ray, const Hit& hit,
                            Surface& s) {
   Ray local = ray;
-  local.origin = instance.to_object.point(ray.origin);
-  local.direction = instance.to_object.vector(ray.direction);
+  local.origin = instance.to_world.point_back(ray.origin);
+  local.direction = instance.to_world.vector_back(ray.direction);
   const Transform& m = instance.to_world;
   const float scale = length({m.m[0][0], m.m[1][0], m.m[2][0]});
   const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, local.direction, local.origin))) / scale;

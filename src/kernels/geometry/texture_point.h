@@ -79,7 +79,7 @@ inline TexturePoint point_on_disk(const Disk& disk, Vec3 point) {
 inline Vec3 into_object(const SceneView& scene, const Hit& hit, float time, Vec3 v) {
   if (hit.instance == none) return v;
   const InstanceRecord& instance = scene.instances[hit.instance];
-  if (instance.motion == none) return instance.to_object.vector(v);
+  if (instance.motion == none) return instance.to_world.vector_back(v);
   return into_moving(scene, instance.motion, {{0.0f, 0.0f, 0.0f}, v, infinity, time}).direction;
 }
 
@@ -117,8 +117,8 @@ inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const 
   const InstanceRecord& instance = scene.instances[hit.instance];
   if (instance.motion != none) [[unlikely]]
     return point_on_moving(scene, hit, surface.point, surface.normal, time);
-  TexturePoint p = point_on_shape(scene, hit, instance.to_object.point(surface.point),
-                                  normalize(instance.to_object.vector(surface.normal)), time);
+  TexturePoint p = point_on_shape(scene, hit, instance.to_world.point_back(surface.point),
+                                  normalize(instance.to_world.vector_back(surface.normal)), time);
   p.dpdu = instance.to_world.vector(p.dpdu);
   p.dpdv = instance.to_world.vector(p.dpdv);
   return p;
