@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import cache, partial
 from math import fsum, inf
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +15,12 @@ from accuray import data
 from accuray.devices.emitters import spread_emissions
 from accuray.devices.lights import LightLowering, matrix
 from accuray.devices.materials import MaterialLowering
+from accuray.devices.refining import Refiner, Triangles, is_refined, least_cosine
 from accuray.devices.rgb_table import rgb_table
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
 from accuray.scene.spectrum import interpolate
 from accuray.scene.textures import CHANNELS, TextureUse
-from accuray.scene.transforms import sine_cosine
 
 Values = dict[str, Any]
 
@@ -38,20 +37,6 @@ def lower(scene: Scene) -> tuple[Any, dict[str, MeshReport]]:
     return lowering.block(), lowering.reports
 
 
-class Triangles(NamedTuple):
-    """The triangles that a shape is rendered as, before its transform: front sides run counter-clockwise.
-
-    positions: float32 (N, 3), metres. faces: uint32 (M, 3), indices of positions. normals: float32 (N, 3), unit, or
-    None for flat shading. uvs: float32 (N, 2), or None. colors: float32 (N, 4), linear Rec.709 and alpha, or None.
-    """
-
-    positions: NDArray[np.float32]
-    faces: NDArray[np.uint32]
-    normals: NDArray[np.float32] | None
-    uvs: NDArray[np.float32] | None
-    colors: NDArray[np.float32] | None = None
-
-
 def triangles(scene: Scene, shape: str) -> Triangles:
     """The triangles of a shape of the scene, by its name: a mesh, or a shape that is rendered as one.
 
@@ -63,8 +48,9 @@ def triangles(scene: Scene, shape: str) -> Triangles:
     if shape not in scene.shapes:
         raise ValueError(f"the scene has no shape {shape!r}: it has {', '.join(scene.shapes) or 'none'}")
     table = scene.shapes[shape]
-    if table["type"] != "mesh" and table["type"] not in lowering.solids:
+    if table["type"] != "mesh" and table["type"] not in lowering.solids and not is_refined(table):
         raise ValueError(f"{shape!r} is a {table['type']}: allowed are mesh, {', '.join(lowering.solids)}")
+    lowering.add_textures()
     result: Triangles = lowering._guard(f"shapes.{shape}", partial(lowering.triangles, shape, table))
     return result
 
@@ -87,12 +73,16 @@ class _Lowering:
         self.textures: dict[str, int] = {}
         self.materials: dict[str, int] = {}
         self.reports: dict[str, MeshReport] = dict(scene.mesh_reports)
+        self._refiner = Refiner(
+            lambda texture, uvs, points: self.builder.texture_values(self.textures[texture], uvs, points),
+            cache(lambda: self._with_camera(core.camera_view)),
+        )
+        self._refined: dict[str, Triangles] = {}
 
     def block(self) -> Any:
         """Adds everything in a fixed order and finishes the block."""
         builder, film = self.builder, self.scene.film
-        for name, texture in self.scene.textures.items():
-            self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
+        self.add_textures()
         spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.triangles)
         materials = self._guard("materials", spread)
         self.materials = MaterialLowering(materials, builder, self._values_of, self._guard).numbers()
@@ -101,13 +91,22 @@ class _Lowering:
         lights = LightLowering(builder, values_of, self._spectrum, self._picture, self._need_rgb_table)
         for name, light in self.scene.lights.items():
             self._guard(f"lights.{name}", partial(lights.add, light))
-        camera, pixel_filter, integrator = self.scene.camera, self.scene.filter, self.scene.integrator
-        values = self._values("camera", camera)
-        self._guard("camera", partial(builder.set_camera, camera["type"], values, film["width"], film["height"]))
+        pixel_filter, integrator = self.scene.filter, self.scene.integrator
+        self._with_camera(builder.set_camera)
         builder.set_filter(pixel_filter["type"], self._values("filter", pixel_filter))
         builder.set_integrator(integrator["type"], self._values("integrator", integrator))
         builder.set_film(film["unit"], film["hide_environment"])
         return builder.finish()
+
+    def add_textures(self) -> None:
+        """Gives the builder the scene's textures, which materials and displacement refer to."""
+        for name, texture in self.scene.textures.items():
+            self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
+
+    def _with_camera(self, action: Callable[..., Any]) -> Any:
+        camera, film = self.scene.camera, self.scene.film
+        values = self._values("camera", camera)
+        return self._guard("camera", partial(action, camera["type"], values, film["width"], film["height"]))
 
     def _guard(self, key: str, action: Callable[[], Any]) -> Any:
         try:
@@ -191,7 +190,7 @@ class _Lowering:
     def _add_shape(self, name: str, table: Values) -> int:
         material, transform = self.materials[table["material"]], matrix(table["transform"])
         number: int
-        if table["type"] == "mesh" or table["type"] in self.solids:
+        if table["type"] == "mesh" or table["type"] in self.solids or is_refined(table):
             mesh = self.triangles(name, table)
             if not self._reads_colors:
                 mesh = mesh._replace(colors=None)
@@ -202,7 +201,16 @@ class _Lowering:
         return number
 
     def triangles(self, name: str, table: Values) -> Triangles:
-        """The triangles of a mesh or of one of `solids`."""
+        """The triangles of a mesh, of one of `solids`, or of what is refined."""
+        if not is_refined(table):
+            return self._plain(name, table)
+        if name not in self._refined:
+            self._refined[name], report = self._refiner.triangles(table, partial(self._plain, name, table))
+            self.reports[name] = self.reports.get(name, {}) | report
+        return self._refined[name]
+
+    def _plain(self, name: str, table: Values) -> Triangles:
+        """The triangles that a shape has before it is refined."""
         if table["type"] == "mesh":
             return self._mesh(name, table)
         from accuray._core import lower as core
@@ -273,9 +281,3 @@ def colour_arrays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     white = [interpolate(*data.illuminants()["D65"], 360.0 + i, "zero") for i in range(471)]
     scale = fsum(observer.y) / fsum(w * y for w, y in zip(white, observer.y, strict=True))
     return cmf, np.array([w * scale for w in white])
-
-
-def least_cosine(crease_angle: float) -> float:
-    """Cosine of the largest angle, in radians, that is no crease; below all cosines for half a turn."""
-    degrees = math.degrees(crease_angle)
-    return -2.0 if degrees >= 180.0 else sine_cosine(degrees)[1]

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from accuray.scene.meshes import POLYGONS
 from accuray.scene.schema import Schema, Type
 from accuray.scene.spectrum import Spectrum
 from accuray.scene.textures import TextureUse
@@ -73,6 +74,8 @@ def _params(values: dict[str, Any], type_: Type) -> dict[str, Any]:
         others = [p for group in type_.sets().get(param.set_name, {}).values() for p in group if p.group != param.group]
         stands_for_others = param.kind in ("file", "text") and any(values[other.name] is not None for other in others)
         described[param.name] = None if stands_for_others else _value(values[param.name])
+    if values.get(POLYGONS) is not None:
+        described[POLYGONS] = _value(values[POLYGONS])
     return described
 
 

@@ -10,18 +10,29 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from accuray.scene.arrays import scale_to_metres
+from accuray.scene.arrays import polygon_sizes, scale_to_metres
 from accuray.scene.errors import Where
 from accuray.scene.readers import Readers
 from accuray.scene.schema import Type
 
-MeshReader = Callable[[Path], dict[str, Any]]
+MeshReader = Callable[..., dict[str, Any]]
 """Reads a file into arrays by the names of the parameters: positions float32 (N, 3), faces uint32 (M, 3), and each or
 None normals (N, 3), uvs (N, 2), colors (N, 4), linear; and "report", a dict of what was left out or made up. Raises
-ValueError with file and line for a wrong file."""
+ValueError with file and line for a wrong file. With ``polygons=True``, for the control mesh of a surface: also
+"polygons" uint32 (P,), the corners of each polygon whose fans the faces are, or None; and no normals."""
+
+CATMULL_CLARK = "catmull_clark"
+POLYGONS = "polygons"
+"""What a control mesh has besides its parameters: how many corners each polygon has, None for triangles."""
 
 _readers: Readers[dict[str, Any]] = Readers()
 register_reader = _readers.register
+
+
+def keep_polygons(values: dict[str, Any], given: dict[str, Any]) -> None:
+    """Adds to a surface of polygons how many corners each of the ``faces`` has that the scene gives."""
+    if values.get("subdivision") == CATMULL_CLARK and "faces" in given:
+        values[POLYGONS] = polygon_sizes(given["faces"])
 
 
 def fill_from_file(type_: Type, values: dict[str, Any], path: Path, where: Where) -> dict[str, Any]:
@@ -29,7 +40,10 @@ def fill_from_file(type_: Type, values: dict[str, Any], path: Path, where: Where
 
     Coordinates in the file are in the length unit of the scene file that names it.
     """
-    arrays = _readers.read(path, where)
+    polygons = values.get("subdivision") == CATMULL_CLARK
+    arrays = _readers.read(path, where, polygons=True) if polygons else _readers.read(path, where)
+    if polygons:
+        values[POLYGONS] = arrays.get(POLYGONS)
     for param in type_.params:
         if param.kind == "array" and arrays.get(param.name) is not None:
             array = arrays[param.name]

@@ -88,14 +88,19 @@ PyMesh subdivide(const Positions& positions, const Indices& indices, const Optio
   return to_python(std::move(surface));
 }
 
-// The length in pixels of each triangle's three edges.
-nb::object lengths_in_view(const Positions& positions, const Indices& indices, const std::string& projection,
-                           const std::array<double, 12>& to_camera, double scale, const std::array<double, 4>& window) {
-  using Projection = mesh::View::Projection;
-  mesh::View view{Projection::angular, to_camera, scale, window};
-  if (projection == "perspective") view.projection = Projection::perspective;
-  if (projection == "orthographic") view.projection = Projection::orthographic;
-  return to_numpy(mesh::lengths_in_view({positions.data(), positions.size()}, {indices.data(), indices.size()}, view),
+// The length in pixels of each triangle's three edges; `transform`: 3 rows of 4 from the mesh to the world.
+nb::object lengths_in_view(const Positions& positions, const Indices& indices, const mesh::View& view,
+                           const std::optional<std::array<double, 12>>& transform) {
+  mesh::View seen = view;
+  for (size_t row = 0; transform && row < 12; row += 4) {
+    const double* axis = &view.to_camera[row];
+    for (size_t k = 0; k < 4; ++k) {
+      const double* column = transform->data() + k;
+      seen.to_camera[row + k] =
+          axis[0] * column[0] + axis[1] * column[4] + axis[2] * column[8] + (k == 3 ? axis[3] : 0.0);
+    }
+  }
+  return to_numpy(mesh::lengths_in_view({positions.data(), positions.size()}, {indices.data(), indices.size()}, seen),
                   3);
 }
 
@@ -131,8 +136,9 @@ void bind_refining(nb::module_& m) {
   m.def("subdivide", &subdivide, "positions"_a, "indices"_a, "polygons"_a.none(), "uvs"_a.none(), "colors"_a.none(),
         "scheme"_a, "levels"_a, "smooth_uvs"_a = true, "creases"_a.none() = nb::none(), "corners"_a.none() = nb::none(),
         "least_cosine"_a = -2.0, "The limit of a catmull_clark or loop surface, as triangles with normals.");
-  m.def("lengths_in_view", &lengths_in_view, "positions"_a, "indices"_a, "projection"_a, "to_camera"_a, "scale"_a,
-        "window"_a, "Lengths in pixels (M, 3) of the edges from each corner of a triangle to the next.");
+  nb::class_<mesh::View>(m, "View");
+  m.def("lengths_in_view", &lengths_in_view, "positions"_a, "indices"_a, "view"_a, "transform"_a.none(),
+        "Lengths in pixels (M, 3) of the edges from each corner of a triangle to the next.");
   m.def("split_edges", &split_edges, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(),
         "marks"_a, "Halves the marked edges; marks (M, 3) are equal on both sides of an edge.");
   m.def("displaced", &displaced, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "offsets"_a, "space"_a,

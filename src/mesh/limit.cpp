@@ -63,15 +63,29 @@ class Dart {
   }
 
   std::vector<double> limit() {
-    for (int i = 0; i < kSteps; ++i) step();
+    for (int i = 0; i < kLimitSteps; ++i) step();
     return centre_;
+  }
+
+  // Of positions; not of unit length.
+  Vec3 normal() {
+    for (int i = 0; i < kNormalSteps; ++i) step();
+    Vec3 sum{};
+    for (uint32_t i = 0; i < size_; ++i) {
+      Vec3 n = cross(from_centre(end(i)), from_centre(end(i + 1)));
+      add(sum.data(), 1.0, n.data(), 3);
+    }
+    return sum;
   }
 
  private:
   // Ample for valences of some hundreds: the slowest mode shrinks by less than a half at a third of them.
-  static constexpr int kSteps = 160;
+  static constexpr int kLimitSteps = 160;
+  // The ring is flat long before it is too small for its own rounding.
+  static constexpr int kNormalSteps = 24;
 
   const double* end(uint32_t i) const { return &ends_[width_ * (i % size_)]; }
+  Vec3 from_centre(const double* p) const { return {p[0] - centre_[0], p[1] - centre_[1], p[2] - centre_[2]}; }
 
   void step() {
     std::vector<double> middles(far_.size()), next_ends(ends_.size()), sum_ends(width_), sum_middles(width_);
@@ -147,34 +161,25 @@ void add_ring_tangents(const Net& net, const Faces& faces, const Sector& sector,
   }
 }
 
-// Across a crease, into a sector of k polygons.
+// Across a crease, into a sector of k polygons. That of Loop's scheme is the left eigenvector of its rules with the
+// eigenvalue 3/8 + cos(pi / k) / 4; Hoppe et al. 1994 have another one, for their own rules at creases.
 Vec3 tangent_across(const Net& net, const Faces& faces, const Sector& sector, Scheme scheme, uint32_t v) {
   uint64_t k = sector.corners.size();
+  bool loop = scheme == Scheme::loop;
+  Turn one = turn(1, 2 * k);
+  double r = k == 1 ? 1.0 : (one.cos + 1.0) / one.sin;
+  double ends = loop ? -r * one.cos / (1.0 + 2.0 * one.cos) : -r * (1.0 + 2.0 * one.cos);
+  double centre = loop ? -r / (1.0 + 2.0 * one.cos) : 4.0 * r * (one.cos - 1.0);
+  if (k == 1) ends = 1.0, centre = -2.0;
   Vec3 t{};
   auto add_to = [&](double weight, uint32_t vertex) { add(t.data(), weight, net.at(vertex), 3); };
-  if (k == 1) {
-    add_to(1.0, sector.first_end);
-    add_to(1.0, sector.last_end);
-    add_to(-2.0, v);
-    return t;
-  }
-  Turn one = turn(1, 2 * k);
-  bool loop = scheme == Scheme::loop;
-  double r = (one.cos + 1.0) / one.sin;
-  double along = loop ? -one.sin : -r * (1.0 + 2.0 * one.cos);
-  if (loop && k == 2) {
-    add_to(-1.0, v);
-    add_to(1.0, net.vertex[faces.previous(sector.corners[0])]);
-    return t;
-  }
-  add_to(along, sector.first_end);
-  add_to(along, sector.last_end);
-  if (!loop) add_to(4.0 * r * (one.cos - 1.0), v);
-  for (uint64_t i = 0; i < k; ++i) {
+  add_to(ends, sector.first_end);
+  add_to(ends, sector.last_end);
+  add_to(centre, v);
+  for (uint64_t i = 0; i < k && k > 1; ++i) {
     uint32_t c = sector.corners[i];
     double here = turn(i, 2 * k).sin, next = turn(i + 1, 2 * k).sin;
-    double inner = loop ? 2.0 - 2.0 * one.cos : 4.0;
-    if (i + 1 < k) add_to(inner * next, net.vertex[faces.previous(c)]);
+    if (i + 1 < k) add_to(loop ? next : 4.0 * next, net.vertex[faces.previous(c)]);
     if (!loop) add_to(here + next, net.vertex[faces.next(faces.next(c))]);
   }
   return t;
@@ -213,7 +218,10 @@ Vec3 sector_normal(const Net& net, const Faces& faces, const Sector& sector, Sch
   }
   Vec3 n = cross(s, t);
   double size = length(n);
-  if (!(size > 1e-9 * length(s) * length(t)) || !std::isfinite(size)) {
+  if (rule == Rule::smooth && !sector.closed) {
+    n = Dart(net, faces, scheme, v, sector).normal();
+    size = length(n);
+  } else if (!(size > 1e-9 * length(s) * length(t)) || !std::isfinite(size)) {
     n = facet_normal(net, faces, sector, v, limits);
     size = length(n);
   }
