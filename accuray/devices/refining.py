@@ -128,24 +128,28 @@ class Refiner:
 
     def _fitted(self, surface: Triangles, moved: Triangles, table: Values) -> Triangles:
         """The moved surface with its edges halved until they are short enough in the picture."""
+        from accuray._core import mesh as core
+
         bound = table["edge_length_px"]
         for _ in range(MOST_HALVINGS):
             marks = self._lengths(moved, table) > bound
             if moved is not surface:
-                marks &= self._lengths(surface, table) > bound / JUMP
+                marks &= self._lengths(surface, table, facing=True) > bound / JUMP
             if not marks.any():
                 break
+            marks = core.spread_marks(surface.positions, surface.faces, marks.astype(np.uint8))
             count = len(surface.faces) + int(np.count_nonzero(marks))
             _admit(count, table, f"edges of at most {bound:g} px make at least")
-            surface = _split(surface, marks.astype(np.uint8))
+            surface = _split(surface, marks)
             moved = self._displaced(surface, table)
         return moved
 
-    def _lengths(self, surface: Triangles, table: Values) -> NDArray[np.float32]:
+    def _lengths(self, surface: Triangles, table: Values, *, facing: bool = False) -> NDArray[np.float32]:
+        """Pixels (M, 3) of the edges from each corner of a triangle to the next; or as if they faced the camera."""
         from accuray._core import mesh as core
 
         lengths: NDArray[np.float32] = core.lengths_in_view(
-            surface.positions, surface.faces, self._view(), matrix(table["transform"])
+            surface.positions, surface.faces, self._view(), matrix(table["transform"]), facing
         )
         return lengths
 

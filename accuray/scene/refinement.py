@@ -40,11 +40,17 @@ def _check_surface(shape: dict[str, Any], where: Where) -> None:
         if subdivision == "none" or shape["file"] is not None:
             needs = 'with `positions` and with subdivision = "catmull_clark" or "loop"'
             raise where.child(key).error("has no place here", allowed=needs)
-        for index, row in enumerate(rows):
-            for column, number in enumerate(row[:columns]):
-                if number != int(number):
-                    place = where.child(key, index, column)
-                    raise place.error("is not a vertex", value=float(number), allowed="whole numbers from 0")
+        _check_vertices(rows[:, :columns], len(shape["positions"]), where.child(key))
+
+
+def _check_vertices(rows: Any, count: int, where: Where) -> None:
+    """Numbers of vertices that exist."""
+    for index, row in enumerate(rows.tolist()):
+        for column, number in enumerate(row):
+            if not 0 <= number < count or not number.is_integer():
+                value = int(number) if number.is_integer() else number
+                allowed = f"0 to {count - 1}" if count else "none, for there are no vertices"
+                raise where.child(index, column).error("is not a vertex", value=value, allowed=allowed)
 
 
 def _check_displacement(shape: dict[str, Any], textures: Objects, schema: Schema, where: Where) -> None:

@@ -90,7 +90,7 @@ PyMesh subdivide(const Positions& positions, const Indices& indices, const Optio
 
 // The length in pixels of each triangle's three edges; `transform`: 3 rows of 4 from the mesh to the world.
 nb::object lengths_in_view(const Positions& positions, const Indices& indices, const mesh::View& view,
-                           const std::optional<std::array<double, 12>>& transform) {
+                           const std::optional<std::array<double, 12>>& transform, bool facing) {
   mesh::View seen = view;
   for (size_t row = 0; transform && row < 12; row += 4) {
     const double* axis = &view.to_camera[row];
@@ -100,7 +100,15 @@ nb::object lengths_in_view(const Positions& positions, const Indices& indices, c
           axis[0] * column[0] + axis[1] * column[4] + axis[2] * column[8] + (k == 3 ? axis[3] : 0.0);
     }
   }
-  return to_numpy(mesh::lengths_in_view({positions.data(), positions.size()}, {indices.data(), indices.size()}, seen),
+  return to_numpy(mesh::lengths_in_view({positions.data(), positions.size()}, {indices.data(), indices.size()}, seen,
+                                        facing ? mesh::Measure::facing : mesh::Measure::seen),
+                  3);
+}
+
+nb::object spread_marks(const Positions& positions, const Indices& indices, const Rows<uint8_t, 3>& marks) {
+  if (marks.shape(0) != indices.shape(0)) throw std::invalid_argument("marks need one row for each triangle");
+  return to_numpy(mesh::spread_marks({positions.data(), positions.size()}, {indices.data(), indices.size()},
+                                     {marks.data(), marks.size()}),
                   3);
 }
 
@@ -138,7 +146,9 @@ void bind_refining(nb::module_& m) {
         "least_cosine"_a = -2.0, "The limit of a catmull_clark or loop surface, as triangles with normals.");
   nb::class_<mesh::View>(m, "View");
   m.def("lengths_in_view", &lengths_in_view, "positions"_a, "indices"_a, "view"_a, "transform"_a.none(),
-        "Lengths in pixels (M, 3) of the edges from each corner of a triangle to the next.");
+        "facing"_a = false, "Lengths in pixels (M, 3) of the edges from each corner of a triangle to the next.");
+  m.def("spread_marks", &spread_marks, "positions"_a, "indices"_a, "marks"_a,
+        "Marks (M, 3) that have the longest edge of each triangle with a mark, and both sides of an edge.");
   m.def("split_edges", &split_edges, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(),
         "marks"_a, "Halves the marked edges; marks (M, 3) are equal on both sides of an edge.");
   m.def("displaced", &displaced, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "offsets"_a, "space"_a,

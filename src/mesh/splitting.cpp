@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "mesh/index_table.h"
+#include "mesh/topology.h"
+#include "mesh/weld.h"
 
 namespace accuray::mesh {
 namespace {
@@ -34,9 +36,9 @@ class Ruler {
     return q;
   }
 
-  double length(Vec3 a, Vec3 b) const {
+  double length(Vec3 a, Vec3 b, Measure measure) const {
     if (b < a) std::swap(a, b);
-    return std::max(seen(a, b), facing(a, b) / kUnseen);
+    return measure == Measure::facing ? facing(a, b) : std::max(seen(a, b), facing(a, b) / kUnseen);
   }
 
  private:
@@ -185,15 +187,52 @@ void split_triangle(Halver& halver, std::array<uint32_t, 3> v, std::array<bool, 
 }  // namespace
 
 std::vector<float> lengths_in_view(std::span<const float> positions, std::span<const uint32_t> indices,
-                                   const View& view) {
+                                   const View& view, Measure measure) {
   Ruler ruler(view);
   std::vector<float> lengths(indices.size());
   for (size_t corner = 0; corner < indices.size(); corner += 3) {
     std::array<Vec3, 3> p;
     for (size_t i = 0; i < 3; ++i) p[i] = ruler.in_camera(&positions[3 * size_t{indices[corner + i]}]);
-    for (size_t i = 0; i < 3; ++i) lengths[corner + i] = static_cast<float>(ruler.length(p[i], p[(i + 1) % 3]));
+    for (size_t i = 0; i < 3; ++i)
+      lengths[corner + i] = static_cast<float>(ruler.length(p[i], p[(i + 1) % 3], measure));
   }
   return lengths;
+}
+
+std::vector<uint8_t> spread_marks(std::span<const float> positions, std::span<const uint32_t> indices,
+                                  std::span<const uint8_t> marks) {
+  Net net;
+  std::vector<uint32_t> first = weld(positions);
+  for (uint32_t v : indices) net.vertex.push_back(first[v]);
+  Faces faces;
+  faces.count = static_cast<uint32_t>(indices.size() / 3);
+  faces.sides = 3;
+  faces.sharpness.resize(indices.size());
+  Edges edges(net, faces);
+  auto squared_length = [&](size_t c) {
+    double sum = 0.0;
+    for (size_t i = 0; i < 3; ++i) {
+      size_t a = 3 * size_t{net.vertex[c]} + i, b = 3 * size_t{net.vertex[faces.next(static_cast<uint32_t>(c))]} + i;
+      sum += (double{positions[a]} - positions[b]) * (double{positions[a]} - positions[b]);
+    }
+    return sum;
+  };
+  std::vector<uint8_t> marked(edges.count());
+  for (size_t c = 0; c < marks.size(); ++c) marked[edges.of_corner[c]] |= marks[c];
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t c = 0; c < indices.size(); c += 3) {
+      const uint32_t* e = &edges.of_corner[c];
+      if (marked[e[0]] == 0 && marked[e[1]] == 0 && marked[e[2]] == 0) continue;
+      size_t longest = 0;
+      for (size_t i = 1; i < 3; ++i) longest = squared_length(c + i) > squared_length(c + longest) ? i : longest;
+      changed = changed || marked[e[longest]] == 0;
+      marked[e[longest]] = 1;
+    }
+  }
+  std::vector<uint8_t> result(indices.size());
+  for (size_t c = 0; c < indices.size(); ++c) result[c] = marked[edges.of_corner[c]];
+  return result;
 }
 
 MeshData split_edges(const MeshData& mesh, std::span<const uint8_t> marks) {

@@ -27,11 +27,20 @@ struct View {
 // How much longer than its bound an edge may be where it is out of view or points at the camera.
 inline constexpr double kUnseen = 8.0;
 
-// Length in pixels of the part of each edge that is in view, or 1 / kUnseen of its length if it faced the camera,
-// whichever is more: that keeps triangles of a sensible shape, and coarse where they are not seen. One for each corner,
-// of the edge to the next. The same for both directions of an edge.
+enum class Measure {
+  seen,  // the part of an edge that is in view, or 1 / kUnseen of its length if it faced the camera, whichever is more:
+         // that keeps triangles of a sensible shape, and coarse where they are not seen
+  facing  // as if the edge faced the camera, in view or not
+};
+
+// Length in pixels of the edge from each corner of a triangle to the next; the same in both directions of an edge.
 std::vector<float> lengths_in_view(std::span<const float> positions, std::span<const uint32_t> indices,
-                                   const View& view);
+                                   const View& view, Measure measure);
+
+// Marks so that every triangle with a mark has one on its longest edge too: halving these again and again spoils no
+// angle (Rivara 1984). Both sides of an edge, and the two edges along a seam, have the same mark afterwards.
+std::vector<uint8_t> spread_marks(std::span<const float> positions, std::span<const uint32_t> indices,
+                                  std::span<const uint8_t> marks);
 
 // Halves every edge that is marked; marks: one for each corner, of the edge to the next, equal on both sides. Triangles
 // without marks stay. Vertices at the same place stay at the same place, so no crack opens. Normals, uvs and colours
