@@ -15,7 +15,8 @@ from accuray.data.version import __version__
 
 if TYPE_CHECKING:
     from accuray.devices import build_info, cache_folder
-    from accuray.devices.lowering import Triangles, triangles
+    from accuray.devices.lowering import triangles
+    from accuray.devices.refining import Triangles
     from accuray.film import Image, ImageError, probe_writable
     from accuray.film.comparing import Comparison, compare
     from accuray.formats import convert, load
@@ -48,7 +49,7 @@ _HOMES = {
     "Scene": "accuray.formats",
     "SceneError": "accuray.scene",
     "Spectrum": "accuray.scene",
-    "Triangles": "accuray.devices.lowering",
+    "Triangles": "accuray.devices.refining",
     "build_info": "accuray.devices",
     "cache_folder": "accuray.devices",
     "compare": "accuray.film.comparing",

@@ -134,6 +134,8 @@ def run(options: Namespace) -> int:
             warn(options, "interrupted before there was an image")
             return interrupts.status
     note(options, f"rendered in {rendered - loaded:.2f} s, written in {perf_counter() - rendered:.2f} s")
+    for text in tessellations(image):
+        note(options, text)
     for text in defects(image):
         warn(options, text)
     if interrupts.status:
@@ -209,6 +211,13 @@ def crop_window(options: Namespace, width: int, height: int) -> tuple[int, int, 
         window = f"the pixels x {x0}:{x1}, y {y0}:{y1}"
         raise UsageError(f"{flag} asks for {window} of an image of {width}x{height}", COMMAND)
     return x0, y0, x1, y1
+
+
+def tessellations(image: accuray.Image) -> Iterator[str]:
+    """Says how many triangles were made of shapes that are subdivided or displaced."""
+    for shape, report in image.metadata.get("mesh_reports", {}).items():
+        if "tessellated_triangles" in report:
+            yield f"shapes.{shape}: cut into {report['tessellated_triangles']} triangles"
 
 
 def defects(image: accuray.Image) -> Iterator[str]:

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from accuray.devices.kept import Kept, lowered_tables, same, shapes_alone, stands_alone
-from accuray.devices.lowering import MeshReport, lower, with_camera
+from accuray.devices.lowering import lower, with_camera
+from accuray.devices.shapes import MeshReport
 from accuray.film import Film
 from accuray.scene import Scene
 

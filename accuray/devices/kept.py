@@ -108,7 +108,7 @@ def same(a: Any, b: Any) -> bool:
     if isinstance(a, Photometry):
         return same(vars(a), vars(b))
     if isinstance(a, Transforms):
-        return a.count == b.count and a.sha256 == b.sha256
+        return same((a.count, a.sha256), (b.count, b.sha256))
     if isinstance(a, np.ndarray):
         return a.dtype == b.dtype and a.shape == b.shape and bool(np.array_equal(a, b))
     return False

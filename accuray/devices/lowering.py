@@ -3,45 +3,30 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import cache, partial
 from math import fsum, inf
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from accuray import data
-from accuray.devices.budget import Budget
 from accuray.devices.emitters import spread_emissions
-from accuray.devices.instancing import IDENTITY, Instancing, Rows, product
-from accuray.devices.kept import Kept, stands_alone
-from accuray.devices.lights import LightLowering, matrix
+from accuray.devices.kept import Kept
+from accuray.devices.lights import LightLowering
 from accuray.devices.materials import MaterialLowering
-from accuray.devices.motion import (
-    MOST_OF_SIZE,
-    Eye,
-    Keys,
-    body_keys,
-    box_under,
-    camera_in_place,
-    camera_keys,
-    shape_box,
-)
+from accuray.devices.motion import Eye, camera_in_place, camera_keys, check_error
+from accuray.devices.refining import Refiner, Triangles
 from accuray.devices.rgb_table import rgb_table
+from accuray.devices.shapes import MeshReport, ShapeLowering, Tools, is_meshed, solids
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
-from accuray.scene.deformation import deforms
 from accuray.scene.motion import Motion
 from accuray.scene.spectrum import interpolate
 from accuray.scene.textures import CHANNELS, TextureUse
-from accuray.scene.transforms import sine_cosine
 
 Values = dict[str, Any]
-
-
-MeshReport = dict[str, Any]
 
 
 def lower(scene: Scene, kept: Kept | None = None) -> tuple[Any, dict[str, MeshReport]]:
@@ -51,38 +36,21 @@ def lower(scene: Scene, kept: Kept | None = None) -> tuple[Any, dict[str, MeshRe
     builder can find out, such as a camera that looks at itself.
     """
     lowering = _Lowering(scene, kept)
-    return lowering.block(), lowering.reports
+    return lowering.block(), lowering.shapes.reports
 
 
 def with_camera(scene: Scene, block: Any) -> Any | None:
     """The block of a scene that differs in its camera alone; None if it must be lowered anew. Raises SceneError."""
     from accuray._core import lower as core
 
-    lowering, camera, film = _Lowering(scene), scene.camera, scene.film
+    camera = scene.camera
     params = schemas.current().family("camera").types[camera["type"]].params
     plain = ("float", "vec", "enum", "int", "bool", "transform")
     if isinstance(camera["transform"], Motion) or any(
         camera[p.name] is not None and p.kind not in plain for p in params
     ):
         return None
-    values = lowering._values("camera", camera_in_place(camera))
-    change = partial(core.with_camera, block, camera["type"], values, film["width"], film["height"])
-    return lowering._guard("camera", change)
-
-
-class Triangles(NamedTuple):
-    """The triangles that a shape is rendered as, before its transform: front sides run counter-clockwise.
-
-    positions: float32 (N, 3), metres; (K, N, 3) for K forms at equal steps while the shutter is open. faces: uint32
-    (M, 3), indices of positions. normals: float32 like positions, unit, or None for flat shading. uvs: float32 (N, 2),
-    or None. colors: float32 (N, 4), linear Rec.709 and alpha, or None.
-    """
-
-    positions: NDArray[np.float32]
-    faces: NDArray[np.uint32]
-    normals: NDArray[np.float32] | None
-    uvs: NDArray[np.float32] | None
-    colors: NDArray[np.float32] | None = None
+    return _Lowering(scene)._with_camera(partial(core.with_camera, block))
 
 
 def triangles(scene: Scene, shape: str) -> Triangles:
@@ -96,9 +64,10 @@ def triangles(scene: Scene, shape: str) -> Triangles:
     if shape not in scene.shapes:
         raise ValueError(f"the scene has no shape {shape!r}: it has {', '.join(scene.shapes) or 'none'}")
     table = scene.shapes[shape]
-    if table["type"] != "mesh" and table["type"] not in lowering.solids:
-        raise ValueError(f"{shape!r} is a {table['type']}: allowed are mesh, {', '.join(lowering.solids)}")
-    result: Triangles = lowering._guard(f"shapes.{shape}", partial(lowering.triangles, shape, table))
+    if not is_meshed(table):
+        raise ValueError(f"{shape!r} is a {table['type']}: allowed are mesh, {', '.join(solids())}")
+    lowering.add_textures()
+    result: Triangles = lowering._guard(f"shapes.{shape}", partial(lowering.shapes.triangles, shape, table))
     return result
 
 
@@ -112,48 +81,50 @@ class _Lowering:
         self.kept = Kept() if kept is None else kept
         self.cmf, self.d65 = colour_arrays()
         self.builder = core.SceneBuilder(self.cmf, self.d65)
-        self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
-        kinds = schemas.current().family("texture").types
-        self.budget = Budget(scene.render["compact"])
-        self.instancing = Instancing(scene.shapes)
-        self._prototypes: dict[str, int] = {}
-        self._groups: dict[tuple[str, ...], int] = {}
-        self._reads_colors = any(kinds[texture["type"]].reads_colors for texture in scene.textures.values())
         self._spectra: dict[Spectrum, Any] = {}
         self._pictures: dict[tuple[str, tuple[int, ...], bytes], int] = {}
         self.textures: dict[str, int] = {}
         self.materials: dict[str, int] = {}
-        self.reports: dict[str, MeshReport] = dict(scene.mesh_reports)
-        self._eye = Eye(scene.camera, scene.film)
-        self._boxes: dict[str, NDArray[np.float64]] = {}
-        self._moves = False
+        refiner = Refiner(
+            lambda texture, uvs, points: self.builder.texture_values(self.textures[texture], uvs, points),
+            cache(lambda: self._with_camera(core.camera_view)),
+        )
+        self.shapes = ShapeLowering(scene, Tools(self.builder, self.kept, self._values, self._guard, refiner))
 
     def block(self) -> Any:
         """Adds everything in a fixed order and finishes the block."""
         builder, film = self.builder, self.scene.film
-        for name, texture in self.scene.textures.items():
-            self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        shown, nested = self.instancing.shown(), self.instancing.nested()
-        total = self.instancing.total
-        self._guard("shapes", lambda: self.budget.admit_instances(total(shown), total(nested)))
-        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.instancing, self.triangles)
+        self.add_textures()
+        self.shapes.admit()
+        spread = partial(
+            spread_emissions,
+            *(self.scene.materials, self.scene.shapes, self.shapes.instancing, self.shapes.triangles),
+        )
         materials = self._guard("materials", spread)
         self.materials = MaterialLowering(materials, builder, self._values_of, self._guard).numbers()
-        self._add_shapes()
+        self.shapes.add(self.materials)
         values_of = partial(self._values, "light")
         lights = LightLowering(builder, values_of, self._spectrum, self._picture, self._need_rgb_table)
         for name, light in self.scene.lights.items():
             self._guard(f"lights.{name}", partial(lights.add, light))
-        camera, pixel_filter, integrator = self.scene.camera, self.scene.filter, self.scene.integrator
-        self._guard("camera", partial(self._set_camera, camera))
-        if self._moves and self.scene.clock.shutter:
-            builder.set_shutter(*np.array(self.scene.clock.shutter, dtype=np.float64).T.copy())
+        pixel_filter, integrator = self.scene.filter, self.scene.integrator
+        self._set_camera()
         builder.set_filter(pixel_filter["type"], self._values("filter", pixel_filter))
         builder.set_integrator(integrator["type"], self._values("integrator", integrator))
         builder.set_film(film["unit"], film["hide_environment"])
         builder.set_compact(self.scene.render["compact"])
         return builder.finish()
+
+    def add_textures(self) -> None:
+        """Gives the builder the scene's textures, which materials and displacement refer to."""
+        for name, texture in self.scene.textures.items():
+            self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
+
+    def _with_camera(self, action: Callable[..., Any]) -> Any:
+        camera, film = self.scene.camera, self.scene.film
+        values = self._values("camera", camera_in_place(camera))
+        return self._guard("camera", partial(action, camera["type"], values, film["width"], film["height"]))
 
     def _guard(self, key: str, action: Callable[[], Any]) -> Any:
         try:
@@ -221,186 +192,15 @@ class _Lowering:
             return self.builder.textured_emission(texture, use.scale)
         return self.builder.textured_reflectance(texture, use.scale)
 
-    def _add_shapes(self) -> None:
-        """First what the scene shows itself and is still, then the prototypes, group by group, with their instances.
-
-        What moves is an instance of itself.
-        """
-        moving = []
-        for name, table in self.scene.shapes.items():
-            if table["type"] == "instance" or table["prototype"]:
-                continue
-            if isinstance(table["transform"], Motion):
-                moving.append(name)
-            else:
-                self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
-        for name in moving:
-            table = {**self.scene.shapes[name], "transform": None, "prototype": True}
-            number = self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
-            self._guard(f"shapes.{name}", partial(self._add_moving, name, number, (name,), IDENTITY, None))
-        shown = self.instancing.shown()
-        self.builder.reserve_instances(self.instancing.total(shown) + len(moving))
-        for name in shown:
-            self._guard(f"shapes.{name}", partial(self._add_instances, name))
-        for table in self.scene.shapes.values():
-            if table.get("instances") is not None:
-                table["instances"].forget()
-
-    def _add_instances(self, name: str) -> None:
-        """All instances of groups that an instance shape comes to."""
-        lights = 0
-        for group, count in self.instancing.counts[name].items():
-            number, material = self._group(group.members), self._covering(group.material)
-            lights += count * self.builder.most_lights(number, len(group.members), material)
-        self.budget.admit_lights(lights)
-        moves = isinstance(self.scene.shapes[name]["transform"], Motion)
-        for group, rows in self.instancing.copies(name):
-            number, material = self._group(group.members), self._covering(group.material)
-            if moves:
-                self._add_moving(name, number, group.members, rows, material)
-            else:
-                self.builder.add_instances(number, len(group.members), rows, material)
-
-    def _add_moving(self, name: str, first: int, members: tuple[str, ...], rows: Rows, material: int | None) -> None:
-        """A group under each of some transforms (n, 12), all of which move as the shape of this name does."""
-        boxes = np.array([self._boxes[member] for member in members])
-        around = np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
-        for row in rows:
-            keys = body_keys(self.scene.shapes[name]["transform"], box_under(row, around), self._eye)
-            self._check_error(keys)
-            if keys.error > 0.0:
-                self.reports[name] = {**self.reports.get(name, {}), "motion_error": keys.error}
-            self.builder.add_moving_instance(first, len(members), product(keys.rows, row[None]), material)
-        self._moves = True
-
-    def _covering(self, material: str | None) -> int | None:
-        return None if material is None else self.materials[material]
-
-    def _group(self, members: tuple[str, ...]) -> int:
-        """The number of the first of some prototypes that follow each other."""
-        if members not in self._groups:
-            first, *_ = [self._prototype(name) for name in members]
-            self._groups[members] = first
-        return self._groups[members]
-
-    def _prototype(self, name: str) -> int:
-        """A new number for a prototype, whose arrays are in the block once."""
-        if name in self._prototypes:
-            again: int = self.builder.repeat_geometry(self._prototypes[name])
-            return again
-        add = partial(self._add_shape, name, self.scene.shapes[name])
-        self._prototypes[name] = self._guard(f"shapes.{name}", add)
-        return self._prototypes[name]
-
-    def _check_error(self, keys: Keys) -> None:
-        if keys.error > MOST_OF_SIZE:
-            raise ValueError(
-                f"turns so far while the shutter is open that {len(keys.rows) - 1} straight segments miss it by "
-                f"{keys.error:.3g} of its size: allowed up to {MOST_OF_SIZE:g}",
-                "transform",
-            )
-
-    def _set_camera(self, camera: Values) -> None:
-        film, motion = self.scene.film, camera["transform"]
-        values = self._values("camera", camera_in_place(camera))
-        self.builder.set_camera(camera["type"], values, film["width"], film["height"])
-        if isinstance(motion, Motion):
-            keys = camera_keys(motion, camera["position"], self._eye)
-            self._check_error(keys)
+    def _set_camera(self) -> None:
+        self._with_camera(self.builder.set_camera)
+        camera = self.scene.camera
+        if isinstance(camera["transform"], Motion):
+            keys = camera_keys(camera["transform"], camera["position"], Eye(camera, self.scene.film))
+            self._guard("camera", partial(check_error, keys))
             self.builder.set_camera_motion(keys.rows)
-            self._moves = True
-
-    def _add_shape(self, name: str, table: Values) -> int:
-        material = self.materials[table["material"]]
-        number: int
-        if table["type"] == "mesh" or table["type"] in self.solids:
-            mesh = self._placed_mesh(name, table)
-            self._boxes[name] = np.array(mesh.box, dtype=np.float64)
-            number = self.builder.add_mesh(mesh, material, table["prototype"])
-        else:
-            self._boxes[name] = shape_box(table)
-            values, transform = self._values("shape", table), matrix(table["transform"])
-            number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
-        return number
-
-    def _placed_mesh(self, name: str, table: Values) -> Any:
-        """The mesh of a shape in its place, which scenes that show the same one share."""
-        from accuray._core import lower as core
-
-        sources: list[Any] = []
-        options: list[Any] = [self._reads_colors, None if stands_alone(table) else object()]
-        for key, value in table.items():
-            if isinstance(value, np.ndarray) and key != "transform":
-                sources.append(value)
-            elif key not in ("material", "prototype", "file"):
-                options.append((key, value.tobytes() if isinstance(value, np.ndarray) else value))
-
-        def place() -> tuple[Any, MeshReport | None]:
-            self.reports.pop(name, None)
-            mesh = self.triangles(name, table)
-            if not self._reads_colors:
-                mesh = mesh._replace(colors=None)
-            self.budget.admit_mesh(mesh)
-            segments = 0 if mesh.positions.ndim == 2 else len(mesh.positions) - 1
-            rows = mesh._replace(
-                positions=mesh.positions.reshape(-1, 3),
-                normals=None if mesh.normals is None else np.ascontiguousarray(mesh.normals).reshape(-1, 3),
-            )
-            return core.place_mesh(*rows, matrix(table["transform"]), segments), self.reports.get(name)
-
-        self._moves |= deforms(table)
-        placed, report = self.kept.part("mesh", tuple(sources), tuple(options), place)
-        if report is not None:
-            self.reports[name] = report
-        return placed
-
-    def triangles(self, name: str, table: Values) -> Triangles:
-        """The triangles of a mesh or of one of `solids`."""
-        if table["type"] == "mesh":
-            return self._mesh(name, table)
-        from accuray._core import lower as core
-
-        newell = np.array(data.teapot()) if table["type"] == "teapot" else None
-        return Triangles(*core.tessellate(table["type"], self._values("shape", table), newell))
-
-    def _mesh(self, name: str, table: Values) -> Triangles:
-        """Arrays of a mesh; those that came from no file are repaired first, as readers do."""
-        from accuray._core import mesh as core
-
-        positions, faces, normals, uvs, colors = (
-            table[key] for key in ("positions", "faces", "normals", "uvs", "colors")
-        )
-        if positions.ndim == 3:
-            return self._deforming_mesh(table)
-        if table["file"] is None:
-            mesh = core.repair(positions, faces, normals, uvs, colors)
-            positions, faces, normals, uvs = mesh.positions, mesh.indices, mesh.normals, mesh.uvs
-            colors = mesh.colors
-            if mesh.report["nonfinite_triangles"] or mesh.report["degenerate_triangles"]:
-                self.reports[name] = mesh.report
-        if table["shading"] == "flat":
-            normals = None
-        elif table["crease_angle"] is not None and normals is None:
-            cosine = least_cosine(table["crease_angle"])
-            source, faces, normals = core.creased_normals(positions, faces, cosine)
-            positions, uvs, colors = (None if a is None else a[source] for a in (positions, uvs, colors))
-        elif table["shading"] == "smooth" and normals is None:
-            normals = core.smooth_normals(positions, faces)
-        return Triangles(positions, faces, normals, uvs, colors)
-
-    @staticmethod
-    def _deforming_mesh(table: Values) -> Triangles:
-        """A mesh of several forms, with a form of its normals for each; what moves is not repaired."""
-        from accuray._core import mesh as core
-
-        positions, faces, normals = table["positions"], table["faces"], table["normals"]
-        if table["shading"] == "flat":
-            normals = None
-        elif table["shading"] == "smooth" and normals is None:
-            normals = np.stack([core.smooth_normals(form, faces) for form in positions])
-        elif normals is not None and normals.ndim == 2:
-            normals = np.broadcast_to(normals, positions.shape)
-        return Triangles(positions, faces, normals, table["uvs"], table["colors"])
+        if (self.shapes.moves or isinstance(camera["transform"], Motion)) and self.scene.clock.shutter:
+            self.builder.set_shutter(*np.array(self.scene.clock.shutter, dtype=np.float64).T.copy())
 
     def _spectrum(self, spectrum: Spectrum) -> Any:
         """The builder's reference to a spectrum; equal spectra share one."""
@@ -442,9 +242,3 @@ def colour_arrays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     white = [interpolate(*data.illuminants()["D65"], 360.0 + i, "zero") for i in range(471)]
     scale = fsum(observer.y) / fsum(w * y for w, y in zip(white, observer.y, strict=True))
     return cmf, np.array([w * scale for w in white])
-
-
-def least_cosine(crease_angle: float) -> float:
-    """Cosine of the largest angle, in radians, that is no crease; below all cosines for half a turn."""
-    degrees = math.degrees(crease_angle)
-    return -2.0 if degrees >= 180.0 else sine_cosine(degrees)[1]

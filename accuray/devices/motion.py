@@ -154,6 +154,16 @@ def _corners(box: Array) -> Array:
     return np.array([[box[(c >> axis) & 1][axis] for axis in range(3)] for c in range(8)])
 
 
+def check_error(keys: Keys) -> None:
+    """Raises ValueError(problem, key) for keys that miss the motion by more than can be borne."""
+    if keys.error > MOST_OF_SIZE:
+        raise ValueError(
+            f"turns so far while the shutter is open that {len(keys.rows) - 1} straight segments miss it by "
+            f"{keys.error:.3g} of its size: allowed up to {MOST_OF_SIZE:g}",
+            "transform",
+        )
+
+
 def body_keys(motion: Motion, box: Array, eye: Eye) -> Keys:
     """The keys of a body that fills a box (2, 3), low and high corner, before it is moved."""
     corners = _corners(box)

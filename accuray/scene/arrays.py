@@ -151,6 +151,15 @@ def _triangles(value: Any, where: Where) -> IndexArray:
     return _frozen(np.array(triangles, dtype=np.uint32).reshape(-1, 3))
 
 
+def polygon_sizes(value: Any) -> IndexArray:
+    """How many corners each polygon has, uint32 (P,), of faces that ``parse_array`` has taken."""
+    import numpy as np
+
+    if isinstance(value, np.ndarray) and value.ndim == 2:
+        return _frozen(np.full(len(value), value.shape[1], dtype=np.uint32))
+    return _frozen(np.array([len(polygon) for polygon in value], dtype=np.uint32))
+
+
 def _check_polygon(polygon: Any, where: Where) -> None:
     if not isinstance(polygon, (list, tuple)) or len(polygon) < 3:
         raise where.error("is not a polygon", value=polygon, allowed="3 or more vertex indices")

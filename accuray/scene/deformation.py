@@ -120,7 +120,7 @@ def deforms(shape: dict[str, Any]) -> bool:
 
 
 def check_deforming(shapes: dict[str, dict[str, Any]], materials: dict[str, dict[str, Any]], where: Where) -> None:
-    """Raises SceneError for what a mesh that deforms cannot have yet: creases found from its form, and emission."""
+    """Raises SceneError for what a mesh that deforms cannot have: creases found from its form, a finer form, emission."""
     for name, shape in shapes.items():
         if not deforms(shape):
             continue
@@ -128,6 +128,9 @@ def check_deforming(shapes: dict[str, dict[str, Any]], materials: dict[str, dict
             raise where.child(name, "crease_angle").error(
                 "would move the creases of a mesh that deforms", allowed='normals in every key, or shading = "smooth"'
             )
+        for key in ("subdivision_levels", "edge_length_px", "displacement"):
+            if shape[key] is not None or shape["subdivision"] != "none":
+                raise where.child(name, key).error("would cut a mesh finely that deforms", allowed="meshes that do not")
         if shape["material"] is not None and materials[shape["material"]]["emission"] is not None:
             raise where.child(name, "material").error(
                 "emits, on a mesh that deforms", value=shape["material"], allowed="a material without emission"

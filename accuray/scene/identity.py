@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from accuray.scene.deformation import deforms
+from accuray.scene.meshes import POLYGONS
 from accuray.scene.motion import Motion
 from accuray.scene.placements import Transforms
 from accuray.scene.schema import Schema, Type
@@ -83,6 +84,8 @@ def _params(values: dict[str, Any], type_: Type) -> dict[str, Any]:
         others = [p for group in type_.sets().get(param.set_name, {}).values() for p in group if p.group != param.group]
         stands_for_others = param.kind in ("file", "text") and any(values[other.name] is not None for other in others)
         described[param.name] = None if stands_for_others else _value(values[param.name])
+    if values.get(POLYGONS) is not None:
+        described[POLYGONS] = _value(values[POLYGONS])
     return described
 
 

@@ -24,6 +24,7 @@ from accuray.scene.motion import matrices_of, mirrors
 from accuray.scene.objects import expect_table, resolve_object, resolve_params
 from accuray.scene.paths import Confinement
 from accuray.scene.photometry import read_photometries
+from accuray.scene.refinement import check_refinement
 from accuray.scene.scope import Scope
 from accuray.scene.shapes import check_shapes
 from accuray.scene.spectra import check_unused
@@ -172,9 +173,10 @@ def _resolved(resident: Resident, frame: float | None) -> Scene:
     shapes = _named("shapes", schema.family("shape").types, scope)
     read_photometries(lights, schema, top.child("lights"))
     check_shapes(shapes, schema, top.child("shapes"))
+    check_refinement(shapes, textures, schema, top.child("shapes"))
     openpbr.settle(materials, top.child("materials"))
     check_parts(materials, schema, top.child("materials"))
-    settle_colour_spaces(textures, materials, top.child("textures"))
+    settle_colour_spaces(textures, materials, shapes, top.child("textures"))
     check_environments(lights, top.child("lights"))
     check_opacity(materials, top)
     check_bumps(textures, materials, schema, top)

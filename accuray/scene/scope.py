@@ -21,8 +21,9 @@ class Scope:
 
     ``defaults`` holds resolved defaults by the identity of their parameter; ``mesh_reports`` collects what the
     readers of mesh files counted, by the name of the shape; ``images`` keeps the pictures that were read, by file,
-    ``meshes`` the arrays of mesh files, by file and length unit, ``arrays`` those that the document itself holds, by
-    key path: further frames of an animation find them there. ``clock`` is the moment of the frame.
+    ``meshes`` the arrays of mesh files, by file, length unit and whether they have polygons, ``arrays`` those that the
+    document itself holds, by key path: further frames of an animation find them there. ``clock`` is the moment of the
+    frame.
     """
 
     document: Document
@@ -31,7 +32,7 @@ class Scope:
     defaults: dict[int, Any] = field(default_factory=dict)
     mesh_reports: dict[str, dict[str, Any]] = field(default_factory=dict)
     images: dict[Path, Any] = field(default_factory=dict)
-    meshes: dict[tuple[Path, str], dict[str, Any]] = field(default_factory=dict)
+    meshes: dict[tuple[Path, str, bool], dict[str, Any]] = field(default_factory=dict)
     arrays: dict[tuple[Key, ...], Any] = field(default_factory=dict)
     clock: Clock = STILL
 

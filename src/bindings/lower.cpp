@@ -4,6 +4,7 @@
 
 #include "bindings/bindings.h"
 #include "lower/builder.h"
+#include "lower/camera_view.h"
 #include "lower/rgb_table.h"
 #include "lower/solids.h"
 
@@ -160,7 +161,17 @@ void bind_textures(nb::class_<SceneBuilder>& builder) {
       .def(
           "textured_emission",
           [](SceneBuilder& b, uint32_t texture, double scale) { return b.spectra().textured_emission(texture, scale); },
-          "texture"_a, "scale"_a);
+          "texture"_a, "scale"_a)
+      .def(
+          "texture_values",
+          [](const SceneBuilder& b, uint32_t texture, const std::optional<Rows<float, 2>>& uvs,
+             const Rows<float, 3>& points) {
+            if (uvs && uvs->shape(0) != points.shape(0))
+              throw std::invalid_argument("uvs and points must have as many rows as each other");
+            const std::span<const float> at = uvs ? std::span(uvs->data(), uvs->size()) : std::span<const float>();
+            return to_numpy(b.texture_values(texture, at, {points.data(), points.size()}), 3);
+          },
+          "texture"_a, "uvs"_a.none(), "points"_a, "Red, green and blue (N, 3) at points of a shape's own space.");
 }
 
 // Vertical angles (V,), horizontal angles (H,), candelas (H * V,).
@@ -393,9 +404,16 @@ void bind_lower(nb::module_& module) {
       },
       "block"_a, "type"_a, "values"_a, "width"_a, "height"_a,
       "The block seen through another camera, of the kind that it has; None if the camera is of another kind.");
+  lower.def(
+      "camera_view",
+      [](const std::string& type, const nb::dict& values, double width, double height) {
+        return camera_view(type, to_values(values), {width, height});
+      },
+      "type"_a, "values"_a, "width"_a, "height"_a, "How long things are in a camera's picture (mesh.View).");
   lower.attr("SOLIDS") = names_of(Solids{});
   lower.def("tessellate", &tessellated, "type"_a, "values"_a, "newell"_a.none(),
-            "A shape of SOLIDS as (positions, indices, normals or None, uvs); a teapot from (512, 3) control points.");
+            "A shape of SOLIDS or a rectangle as (positions, indices, normals or None, uvs); a teapot from (512, 3) "
+            "control points.");
 
   lower.attr("RGB_TABLE_NODES") = kRgbTableNodes;
   lower.def("rgb_table_nodes", [](int n) { return to_numpy(rgb_table_scale_nodes(n), 0); }, "n"_a);

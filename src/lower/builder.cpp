@@ -7,6 +7,7 @@
 #include "kernels/bsdf/list.h"
 #include "kernels/texture/opacity.h"
 #include "lower/emission.h"
+#include "lower/solids.h"
 
 namespace accuray {
 
@@ -26,27 +27,6 @@ Disk moved(const Matrix& m, Disk d) {
 
 SphereLight light_of(const Sphere& s) { return {s.center, s.radius}; }
 DiskLight light_of(const Disk& d) { return {d.center, d.normal, d.radius}; }
-
-// A rectangle as the two triangles that it is rendered by.
-MeshArrays rectangle_mesh(const Values& values) {
-  const auto c = vec_of(values, "corner");
-  const auto u = vec_of(values, "edge_u");
-  const auto v = vec_of(values, "edge_v");
-  // The sine of their angle, squared.
-  const Vec3 x = to_vec3(u);
-  const Vec3 y = to_vec3(v);
-  const float sine2 = length_squared(cross(x, y)) / (length_squared(x) * length_squared(y));
-  if (!(sine2 > 1e-12f))
-    throw std::invalid_argument("edge_u and edge_v span no area: they must not be zero or parallel");
-  MeshArrays mesh;
-  for (const auto& [s, t] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
-    for (size_t k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(c[k] + s * u[k] + t * v[k]));
-    mesh.uvs.push_back(static_cast<float>(s));
-    mesh.uvs.push_back(static_cast<float>(t));
-  }
-  mesh.indices = {0, 1, 2, 0, 2, 3};
-  return mesh;
-}
 
 }  // namespace
 
@@ -248,7 +228,11 @@ uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, co
   const Matrix matrix = transform.value_or(identity_matrix);
   if (type == Sphere::name) return add_analytic(moved(matrix, struct_of<Sphere>(values)), material, prototype);
   if (type == Disk::name) return add_analytic(moved(matrix, struct_of<Disk>(values)), material, prototype);
-  if (type == Rectangle::name) return add_mesh(place_mesh(rectangle_mesh(values), transform), material, prototype);
+  if (type == Rectangle::name) {
+    mesh::MeshData mesh = rectangle_mesh(values);
+    MeshArrays arrays{std::move(mesh.positions), std::move(mesh.indices), {}, std::move(mesh.uvs), {}};
+    return add_mesh(place_mesh(std::move(arrays), transform), material, prototype);
+  }
   throw std::invalid_argument("'" + std::string(type) + "' is no shape of this kind");
 }
 
@@ -411,6 +395,23 @@ SceneView SceneBuilder::draft(const std::vector<const uint8_t*>& sections) const
   view.textures = textures_.records().data();
   view.parameters = pool_.words().data();
   return view;
+}
+
+std::vector<float> SceneBuilder::texture_values(uint32_t texture, std::span<const float> uvs,
+                                                std::span<const float> points) const {
+  if (texture >= textures_.records().size()) throw std::invalid_argument("there is no such texture");
+  const std::vector<const uint8_t*> sections = section_bases();
+  const SceneView view = draft(sections);
+  std::vector<float> values;
+  values.reserve(points.size());
+  for (size_t i = 0; i + 2 < points.size(); i += 3) {
+    TexturePoint at{};
+    if (!uvs.empty()) at.uv = {uvs[2 * (i / 3)], uvs[2 * (i / 3) + 1]};
+    at.point = {points[i], points[i + 1], points[i + 2]};
+    const TextureValue value = texture_value(view, texture, at);
+    values.insert(values.end(), {value[0], value[1], value[2]});
+  }
+  return values;
 }
 
 Block SceneBuilder::finish() {

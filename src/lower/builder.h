@@ -73,6 +73,9 @@ class SceneBuilder {
   void set_film(double step, bool hide_environment);
   void set_compact(bool compact) { root_.compact = compact ? 1u : 0u; }
 
+  // What a texture says at points (3 each) with texture coordinates (2 each, or none): red, green and blue.
+  std::vector<float> texture_values(uint32_t texture, std::span<const float> uvs, std::span<const float> points) const;
+
   Block finish();
 
  private:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/dispatch.h"
+#include "kernels/geometry/refinement_params.h"
 #include "kernels/geometry/solids.h"
 #include "kernels/scene_view.h"
 #include "kernels/schema.h"
@@ -23,9 +24,9 @@ struct Mesh {
 
   static constexpr const char* name = "mesh";
   static constexpr const char* doc =
-      "Triangles, from an OBJ, PLY or STL file or from arrays. The front side is where the vertices run "
-      "counter-clockwise.";
-  static constexpr auto params() {
+      "Triangles, from an OBJ, PLY or STL file or from arrays, or the smooth surface that they control. The front side "
+      "is where the vertices run counter-clockwise.";
+  static constexpr auto own_params() {
     return param_list(
         Param{.name = "file",
               .kind = Kind::file,
@@ -67,11 +68,14 @@ struct Mesh {
             .choices = "auto|flat|smooth"},
         Param{.name = "crease_angle",
               .kind = Kind::real,
-              .doc = "Where there are no normals, they are made, but not across edges that bend by more than this.",
+              .doc =
+                  "Where there are no normals, they are made, but not across edges that bend by more than this. With "
+                  "subdivision such edges are sharp for ever.",
               .low = 0,
               .high = 180,
               .unit = "deg"});
   }
+  static constexpr auto params() { return joined(own_params(), joined(subdivision_params(), refinement_params())); }
 };
 
 struct Sphere {
@@ -140,8 +144,8 @@ struct Rectangle {
 
   static constexpr const char* name = "rectangle";
   static constexpr const char* doc =
-      "A flat parallelogram, given by a corner and two edges; its front side is that of edge_u x edge_v.";
-  static constexpr auto params() {
+      "A parallelogram, given by a corner and two edges; its front side is that of edge_u x edge_v.";
+  static constexpr auto own_params() {
     return param_list(Param{.name = "corner",
                             .kind = Kind::vec,
                             .doc = "One corner.",
@@ -164,6 +168,7 @@ struct Rectangle {
                             .animatable = true,
                             .member = ACCURAY_OFFSET_OF(Rectangle, edge_v)});
   }
+  static constexpr auto params() { return joined(own_params(), refinement_params()); }
 };
 
 struct Instance {
