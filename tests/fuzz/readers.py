@@ -17,6 +17,7 @@ from tests.fuzz import mutation, seeds
 from tests.fuzz.mutation import Mutator
 
 SMALL = {"film.width": 8, "film.height": 8}
+RAYS = [[x / 4.0, y / 4.0, -1.0] for x in (-1.5, 0.0, 0.1, 1.5) for y in (-1.5, -1.0, 0.2)]
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,9 @@ class Reader:
 
 
 def scene(path: Path) -> None:
-    """Loads a scene or a model and puts it into the renderer's memory, where wrong values would be out of range."""
-    devices.load(accuray.load(path, SMALL, roots=[seeds.SCENES]))
+    """Loads a scene or a model and looks into it along a few rays, so that all of it is lowered and much of it used."""
+    loaded = accuray.load(path, SMALL, roots=[seeds.SCENES])
+    accuray.radiance(loaded, [[0.0, 1.0, 4.0]] * len(RAYS), RAYS, 1, threads=1)
 
 
 def part(section: str, table: dict[str, Any]) -> Callable[[Path], None]:

