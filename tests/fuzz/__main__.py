@@ -91,9 +91,10 @@ def main() -> int:
     """The command."""
     known = [*(f"c++:{name}" for name in compiled.SEEDS), *READERS]
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description="Fuzzes every reader.")
-    parser.add_argument("targets", nargs="*", choices=[*known, []], help=", ".join(known), metavar="TARGET")
-    given = parser.parse_args()
-    targets = given.targets or os.environ.get("FUZZ_TARGETS", "").split() or known
+    parser.add_argument("targets", nargs="*", help=", ".join(known), metavar="TARGET")
+    targets = parser.parse_args().targets or os.environ.get("FUZZ_TARGETS", "").split() or known
+    if unknown := set(targets) - set(known):
+        parser.error(f"no such target: {', '.join(sorted(unknown))}; there are {', '.join(known)}")
     seconds = float(os.environ.get("FUZZ_SECONDS", "600"))
     shutil.rmtree(FINDINGS, ignore_errors=True)
     print(f"{len(targets)} targets, {seconds:g} s each", flush=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -100,13 +101,13 @@ READERS: dict[str, Reader] = {
     **{
         kind: Reader(
             f".{kind}",
-            lambda kind=kind: seeds.pictures(kind),  # type: ignore[misc]
+            partial(seeds.pictures, kind),
             mutation.png if kind == "png" else mutation.binary,
             part("textures", {"type": "image"}),
         )
         for kind in ("png", "jpg", "exr", "hdr", "tif", "tga", "bmp")
     },
     "film": Reader(".exr", seeds.films, mutation.binary, film, (ImageError,)),
-    "rgb": Reader(".exr", lambda: seeds.pictures("exr"), mutation.binary, read_rgb, (ImageError,)),
-    "decoder": Reader(".png", lambda: seeds.pictures("png"), mutation.png, read_png, (ImageError,)),
+    "rgb": Reader(".exr", partial(seeds.pictures, "exr"), mutation.binary, read_rgb, (ImageError,)),
+    "decoder": Reader(".png", partial(seeds.pictures, "png"), mutation.png, read_png, (ImageError,)),
 }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import struct
-import sys
 import tempfile
 import tomllib
 from functools import cache
@@ -12,28 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
+import accuray
+from tests.ies_files import ies_text
+from tests.models.model_files import every_feature
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 SCENES = REPOSITORY / "scenes"
-sys.path[:0] = [str(REPOSITORY / "tests"), str(REPOSITORY / "tests" / "models")]
-from ies_files import ies_text  # noqa: E402
-from model_files import every_feature  # noqa: E402
-
-import accuray  # noqa: E402
 
 OBJ_TOKENS = (
-    b"f ",
-    b"v ",
-    b"vt ",
-    b"vn ",
-    b"usemtl a\n",
-    b"mtllib ",
-    b"s 1\n",
-    b"s off\n",
-    b"\\\n",
-    b"/",
-    b"//",
-    b"-9",
-)
+    b"f ", b"v ", b"vt ", b"vn ", b"usemtl a\n", b"mtllib ", b"s 1\n", b"s off\n", b"\\\n", b"/", b"//", b"-9",
+)  # fmt: skip
 MTL_TOKENS = (b"newmtl m\n", b"map_Kd ", b"-s ", b"-bm ", b"illum 7\n", b"Pr ", b"Tf ", b"d ", b"norm ", b"-imfchan m ")
 PLY_TOKENS = (b"double ", b"list ", b"uchar ", b"element vertex 3\n", b"property int k\n", b"end_header\n", b"comment ")
 STL_TOKENS = (b"solid", b"endsolid\n", b"facet normal ", b"outer loop\n", b"vertex ", b"endloop\n", b"endfacet\n")

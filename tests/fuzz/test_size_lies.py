@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fuzz.support import run_module
+from tests.fuzz.support import run_module
 
 FORMATS = {
     "ply",
