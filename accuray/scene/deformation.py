@@ -120,7 +120,7 @@ def deforms(shape: dict[str, Any]) -> bool:
 
 
 def check_deforming(shapes: dict[str, dict[str, Any]], materials: dict[str, dict[str, Any]], where: Where) -> None:
-    """Raises SceneError for what a mesh that deforms cannot have: creases found from its form, a finer form, emission."""
+    """Raises SceneError for what a mesh that deforms cannot have: found creases, a finer form, emission."""
     for name, shape in shapes.items():
         if not deforms(shape):
             continue
