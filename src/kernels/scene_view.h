@@ -75,14 +75,13 @@ struct InstanceRecord {
   uint32_t material;  // overrides the prototypes' material; none: does not
   uint32_t motion;    // index in SceneView::motions, and the transforms are those of its first key; none: it is still
 };
+static_assert(sizeof(InstanceRecord) == 68);  // there may be millions
 
 // Keys [first, first + count) of SceneView::motion_keys; see geometry/motion.h.
 struct MotionRecord {
   uint32_t first;
   uint32_t count;  // 2 or more
 };
-
-static_assert(sizeof(InstanceRecord) == 64);  // there may be millions
 
 struct LightRecord {
   Tagged light;
