@@ -20,7 +20,10 @@ from accuray.scene.schema import Param
 from accuray.scene.scope import Scope
 
 KINDS = ("float", "vec", "spectrum")
-"""Parameter kinds that can be keyed; keys of transforms are the transforms' own."""
+"""Parameter kinds that can be keyed and have one value in a frame; keys of transforms are the transforms' own."""
+
+MOVING_KINDS = ("array", "file")
+"""Parameter kinds whose keys are followed while the shutter is open."""
 
 INTERPOLATION = Param("interpolation", "enum", default="linear", choices=("linear", "step", "smooth"))
 TIME = Param("time", "float", unit="s", min=-1e9, max=1e9)
@@ -46,7 +49,12 @@ def is_keyed(value: Any) -> bool:
 
 def takes_keys(param: Param) -> bool:
     """May the value of a parameter be given by keys?"""
-    return param.animatable and param.kind in KINDS
+    return param.animatable and param.kind in (*KINDS, *MOVING_KINDS)
+
+
+def is_followed(param: Param) -> bool:
+    """Are the keys of a parameter followed while the shutter is open?"""
+    return param.animatable and param.kind in MOVING_KINDS
 
 
 def has_keys(value: Any) -> bool:

@@ -17,7 +17,7 @@ from accuray.scene.arrays import parse_array
 from accuray.scene.deformation import keyed_files, resolve_moving
 from accuray.scene.errors import Where
 from accuray.scene.images import parse_pixels
-from accuray.scene.keys import is_keyed, resolve_keyed
+from accuray.scene.keys import is_followed, is_keyed, resolve_keyed
 from accuray.scene.motion import KEYS, parse_motion
 from accuray.scene.placements import IDS, TRANSFORMS, parse_filed
 from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
@@ -41,7 +41,7 @@ def resolve_value(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     """The canonical value of a parameter that the scene gives. Raises SceneError."""
     if names_texture(value):
         return parse_use(param, value, where, scope)
-    if is_keyed(value) and param.kind not in KEYED_ELSEWHERE:
+    if is_keyed(value) and param.kind not in KEYED_ELSEWHERE and not is_followed(param):
         return resolve_keyed(param, value, where, scope, partial(_plain, param, scope))
     return _RESOLVERS[param.kind](param, value, where, scope)
 
@@ -114,7 +114,7 @@ def _file(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     def resolve(name: Any, place: Where) -> Path:
         return scope.files.resolve(name, place, param.choices)
 
-    if is_keyed(value) and param.animatable:
+    if is_keyed(value):
         return keyed_files(value, where, resolve)
     return resolve(value, where)
 
@@ -128,7 +128,7 @@ def _transform(param: Param, value: Any, where: Where, scope: Scope) -> Any:
 
 
 def _array(param: Param, value: Any, where: Where, scope: Scope) -> Any:
-    if is_keyed(value) and param.animatable:
+    if is_keyed(value):
         return resolve_moving(value, where, scope, partial(parse_array, param))
     if where.path not in scope.arrays:
         scope.arrays[where.path] = _plain_array(param, value, where, scope)
