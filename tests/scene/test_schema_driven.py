@@ -172,8 +172,8 @@ def test_tables_say_all_that_validation_needs() -> None:
 def test_json_schema_is_plain_and_complete() -> None:
     node = json.loads(json.dumps(json_schema()))
     assert set(node["properties"]) == {
-        "accuray", "length_unit", "include", "render", "animation", "film", "camera", "integrator", "models", "spectra", "textures",
-        "materials", "lights", "shapes",
+        "accuray", "length_unit", "include", "render", "animation", "film", "camera", "integrator", "models", "spectra",
+        "textures", "materials", "lights", "shapes",
     }  # fmt: skip
     for section, type_ in all_types():
         if section in ("film", "render"):
