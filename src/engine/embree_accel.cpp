@@ -139,16 +139,16 @@ void EmbreeScene::commit(RTCScene target) {
   check("building the acceleration structure");
 }
 
-EmbreeScene::Place EmbreeScene::place_of(uint32_t first, uint32_t count) const {
-  Place place;
+EmbreeScene::Places EmbreeScene::places_of(uint32_t first, uint32_t count) const {
+  Places places;
   for (uint32_t g = first; g < first + count; ++g) {
     const Tagged shape = view_.geometries[g].shape;
     if (shape.tag != tag_of<Mesh>(Shapes{})) return {};
     const Mesh& mesh = view_.as<Mesh>(shape);
-    place.emplace_back(view_.at(mesh.vertices), mesh.vertices.count);
-    place.emplace_back(view_.at(mesh.indices), mesh.indices.count);
+    places.emplace_back(view_.at(mesh.vertices), mesh.vertices.count);
+    places.emplace_back(view_.at(mesh.indices), mesh.indices.count);
   }
-  return place;
+  return places;
 }
 
 // One transform, or those of its keys: Embree moves between them in straight lines, as geometry/motion.h says.
@@ -165,10 +165,10 @@ void EmbreeScene::place(RTCGeometry instance, const InstanceRecord& record) cons
 }
 
 RTCScene EmbreeScene::prototype_scene(uint32_t first, uint32_t count, const EmbreeScene* before) {
-  const Place place = place_of(first, count);
+  const Places places = places_of(first, count);
   std::shared_ptr<EmbreePrototype> prototype;
-  if (before != nullptr && !place.empty()) {
-    if (const auto found = before->placed_.find(place); found != before->placed_.end()) prototype = found->second;
+  if (before != nullptr && !places.empty()) {
+    if (const auto found = before->placed_.find(places); found != before->placed_.end()) prototype = found->second;
   }
   if (prototype == nullptr) {
     prototype = std::make_shared<EmbreePrototype>(device_, rtcNewScene(device_->handle));
@@ -177,7 +177,7 @@ RTCScene EmbreeScene::prototype_scene(uint32_t first, uint32_t count, const Embr
     ++built_prototypes_;
   }
   prototypes_.push_back(prototype);
-  if (!place.empty()) placed_.emplace(place, prototype);
+  if (!places.empty()) placed_.emplace(places, prototype);
   return prototype->scene;
 }
 

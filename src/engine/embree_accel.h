@@ -73,8 +73,8 @@ class EmbreeScene {
   RTCGeometry make_geometry(uint32_t number);
   void attach(RTCScene target, uint32_t number, uint32_t id);
   // Where the arrays of some meshes lie; empty if one of them is no mesh.
-  using Place = std::vector<std::pair<const void*, uint64_t>>;
-  Place place_of(uint32_t first, uint32_t count) const;
+  using Places = std::vector<std::pair<const void*, uint64_t>>;
+  Places places_of(uint32_t first, uint32_t count) const;
   RTCScene prototype_scene(uint32_t first, uint32_t count, const EmbreeScene* before);
   void place(RTCGeometry instance, const InstanceRecord& record) const;
   void attach_instances(const EmbreeScene* before);
@@ -85,7 +85,7 @@ class EmbreeScene {
   std::shared_ptr<EmbreeDevice> device_;
   RTCScene scene_ = nullptr;
   std::vector<std::shared_ptr<EmbreePrototype>> prototypes_;
-  std::map<Place, std::shared_ptr<EmbreePrototype>> placed_;
+  std::map<Places, std::shared_ptr<EmbreePrototype>> placed_;
   uint32_t built_prototypes_ = 0;
   std::vector<std::unique_ptr<Analytic>> analytic_;
   std::unique_ptr<PackedScene> packed_;

@@ -40,7 +40,7 @@ class SceneBuilder {
   uint32_t add_composition(std::string_view type, Values values, const Values& header,
                            std::optional<SpectrumRef> emission);
   // Each returns the geometry's number. `prototype`: rendered through instances only; these come after all others.
-  uint32_t add_mesh(const PlacedMesh& mesh, uint32_t material, bool prototype);
+  uint32_t add_mesh(const PlacedMesh& placed, uint32_t material, bool prototype);
   uint32_t add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,
                      uint32_t material, bool prototype);
   // A prototype that shows what a geometry before it is: its number. The arrays are shared.

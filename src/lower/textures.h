@@ -42,7 +42,7 @@ class TexturePool {
       : pool_(pool), spectra_(spectra), bulk_(bulk) {}
 
   // The picture's number; textures that show the same one share it.
-  uint32_t add_picture(std::shared_ptr<SharedPicture> picture);
+  uint32_t add_picture(std::shared_ptr<SharedPicture> shared);
   // The texture's number. Textures that show a picture need one.
   uint32_t add(std::string_view type, const Values& values, std::optional<PictureUse> use);
 

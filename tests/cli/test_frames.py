@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import signal
+import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -223,6 +225,21 @@ def test_a_signal_between_frames_ends_after_the_one_that_is_written(
     assert main(["render", zoom, "--frames", "1-3"]) == 130
     assert sorted(path.name for path in Path().glob("zoom.*")) == ["zoom.0001.exr", "zoom.0001.png", "zoom.toml"]
     assert capsys.readouterr().err.splitlines()[-1] == "accuray: 3 frames: 1 rendered, 0 finished before, 2 left"
+
+
+def test_a_killed_process_loses_one_frame_at_most(zoom: str) -> None:
+    command = [sys.executable, "-m", "accuray", "render", zoom, "--frames"]
+    with subprocess.Popen(
+        [*command, "1-1000"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as process:
+        assert process.stdout is not None
+        names = [process.stdout.readline().strip() for _ in range(4)]
+        process.kill()
+    assert names == ["zoom.0001.exr", "zoom.0001.png", "zoom.0002.exr", "zoom.0002.png"]
+    again = subprocess.run([*command, "1-2,5000"], capture_output=True, text=True, check=False, timeout=120)
+    assert again.returncode == 0, again.stderr
+    assert again.stdout.splitlines() == ["zoom.5000.exr", "zoom.5000.png"]
+    assert again.stderr.splitlines()[-1] == "accuray: 3 frames: 1 rendered, 2 finished before"
 
 
 def test_wrong_outputs_are_told_before_anything_is_rendered(zoom: str, capsys: pytest.CaptureFixture[str]) -> None:

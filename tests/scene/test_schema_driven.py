@@ -56,7 +56,7 @@ def test_a_new_bsdf_needs_no_python() -> None:
     tagged = json_schema()["properties"]["materials"]["additionalProperties"]["oneOf"]
     assert "velvet" in [node["properties"]["type"]["const"] for node in tagged]
     assert '### `type = "velvet"`' in reference_markdown()
-    assert "| `tilt` | float | deg | -60 to 60 deg | `5` | Tilt. |" in reference_markdown()
+    assert "| `tilt` | float or keys | deg | -60 to 60 deg | `5` | Tilt. |" in reference_markdown()
 
 
 def test_absolute_lengths_ignore_the_length_unit() -> None:
@@ -180,8 +180,8 @@ def test_tables_say_all_that_validation_needs() -> None:
 def test_json_schema_is_plain_and_complete() -> None:
     node = json.loads(json.dumps(json_schema()))
     assert set(node["properties"]) == {
-        "accuray", "length_unit", "include", "render", "film", "camera", "integrator", "models", "spectra", "textures",
-        "materials", "lights", "shapes",
+        "accuray", "length_unit", "include", "render", "animation", "film", "camera", "integrator", "models", "spectra",
+        "textures", "materials", "lights", "shapes",
     }  # fmt: skip
     for section, type_ in all_types():
         if section in ("film", "render"):
