@@ -7,6 +7,7 @@ within 1e-4 of the body's size if that is more, of where it really is; a tenth o
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -187,18 +188,23 @@ def camera_keys(motion: Motion, position: tuple[float, ...], eye: Eye) -> Keys:
 def _segmented(motion: Motion, error: Any, allowed: float) -> tuple[Array, float]:
     """The matrices (K, 4, 4) of the fewest segments whose error is allowed, else of the most, and the error."""
     floor = motion.degrees / MOST_DEGREES
+    at_keys = _matrices(motion, motion.bends)
     for count in COUNTS:
         if count < floor and count != COUNTS[-1]:
             continue
-        keys = np.array([motion.at(k / count) for k in range(count + 1)])
-        shares = [(k + part) / count for k in range(count) for part in PARTS] + list(motion.bends)
-        true = np.array([motion.at(share) for share in shares])
-        worst = error(true, between_keys(keys, np.array(shares)))
+        keys = _matrices(motion, [k / count for k in range(count + 1)])
+        shares = [(k + part) / count for k in range(count) for part in PARTS]
+        true = np.concatenate([_matrices(motion, shares), at_keys])
+        worst = error(true, between_keys(keys, np.array([*shares, *motion.bends])))
         if worst <= allowed:
             break
         # On a curve the error falls with the square of the number: no use in trying much smaller ones.
         floor = 0.5 * count * math.sqrt(worst / allowed) if allowed > 0.0 and not motion.bends else 0.0
     return keys, worst
+
+
+def _matrices(motion: Motion, shares: Sequence[float]) -> Array:
+    return np.array([motion.at(share) for share in shares]).reshape(-1, 4, 4)
 
 
 def between_keys(keys: Array, shares: Array) -> Array:
