@@ -5,7 +5,7 @@ BIN := .venv/bin
 OUT := out
 
 .DEFAULT_GOAL := help
-.PHONY: help render test test-long lint bench clean
+.PHONY: help render test test-long lint fuzz bench clean
 
 help: ## list these commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -27,6 +27,10 @@ test-long: ## run the tests that take long: planted bugs, convergence
 lint: ## check style, types, layers, sizes
 	@tools/bootstrap.sh build test lint
 	@tools/lint.sh
+
+fuzz: ## read damaged files of every kind, FUZZ_SECONDS (600) each; clang is installed for it
+	@tools/bootstrap.sh build fuzz
+	@$(BIN)/python -m tests.fuzz
 
 bench: ## measure speed and time-to-error, beside the peers that are installed
 	@tools/bootstrap.sh build test

@@ -3,6 +3,8 @@
 #
 #   tools/bootstrap.sh [GROUP...]     GROUP: dependency groups of pyproject.toml (default: build)
 #
+# The group fuzz also installs clang with the runtimes of libFuzzer and of its sanitizers.
+#
 # Every step looks first and does only what is missing, so a second run takes a moment and needs no network.
 # On Debian and its relatives missing system packages are installed (as root, else by sudo); elsewhere this script
 # says what to install and stops.
@@ -40,6 +42,17 @@ python_has_headers() {
 sys.exit(not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")))' 2>/dev/null
 }
 
+# True if clang is here with libFuzzer and the sanitizers.
+can_fuzz() {
+  has_command clang++ || return 1
+  local folder status=0
+  folder=$(mktemp -d)
+  printf 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }\n' >"$folder/a.cpp"
+  clang++ -fsanitize=fuzzer,address,undefined "$folder/a.cpp" -o "$folder/a" 2>/dev/null || status=1
+  rm -r "$folder"
+  return "$status"
+}
+
 # Prints the Debian names of the packages that are missing, one per line.
 missing_packages() {
   has_command g++ || echo g++
@@ -59,6 +72,7 @@ readonly WHAT_TO_INSTALL="AccuRay needs, on any platform:
   Python $MINIMUM_PYTHON or later with venv and its C headers
   Embree 3.13 or 4 and TBB with their headers (https://www.embree.org)
   GoogleTest, for the C++ tests
+  clang with libFuzzer and its sanitizers, for make fuzz
 Install them with your package manager, then run make again; on Debian and Ubuntu, make does it by itself."
 
 apt_get() {
@@ -69,22 +83,36 @@ apt_get() {
   fi
 }
 
+# Installs the packages of Debian that are named.
+apt_install() {
+  has_command apt-get || fail "missing here: $* (Debian's names).
+$WHAT_TO_INSTALL"
+  [ "$(id -u)" -eq 0 ] || has_command sudo || fail "missing: $*. There is no sudo here, so run as root:
+  apt-get install $*"
+
+  say "installing system packages: $*"
+  # The package lists are fetched only if the ones at hand do not do: they are absent or name files that are gone.
+  apt_get install -y --no-install-recommends "$@" 2>/dev/null ||
+    { apt_get update && apt_get install -y --no-install-recommends "$@"; } ||
+    fail "apt-get could not install: $*"
+}
+
 install_system_packages() {
   local packages
   mapfile -t packages < <(missing_packages)
   [ "${#packages[@]}" -gt 0 ] || return 0
-  has_command apt-get || fail "missing here: ${packages[*]} (Debian's names).
-$WHAT_TO_INSTALL"
-  [ "$(id -u)" -eq 0 ] || has_command sudo || fail "missing: ${packages[*]}. There is no sudo here, so run as root:
-  apt-get install ${packages[*]}"
-
-  say "installing system packages: ${packages[*]}"
-  # The package lists are fetched only if the ones at hand do not do: they are absent or name files that are gone.
-  apt_get install -y --no-install-recommends "${packages[@]}" 2>/dev/null ||
-    { apt_get update && apt_get install -y --no-install-recommends "${packages[@]}"; } ||
-    fail "apt-get could not install: ${packages[*]}"
+  apt_install "${packages[@]}"
   mapfile -t packages < <(missing_packages)
   [ "${#packages[@]}" -eq 0 ] || fail "still missing after their installation: ${packages[*]}.
+$WHAT_TO_INSTALL"
+}
+
+# The runtimes are a package of their own, named for the version of clang.
+install_fuzzer() {
+  can_fuzz && return 0
+  has_command clang++ || apt_install clang
+  can_fuzz || apt_install "libclang-rt-$(clang++ -dumpversion | cut -d. -f1)-dev"
+  can_fuzz || fail "clang++ does not link with -fsanitize=fuzzer,address,undefined.
 $WHAT_TO_INSTALL"
 }
 
@@ -130,6 +158,7 @@ build_environment() {
 
 [ "$(uname -m)" = x86_64 ] || fail "AccuRay runs on x86-64 processors with AVX2, and this one is $(uname -m)."
 install_system_packages
+case " $* " in *" fuzz "*) install_fuzzer ;; esac
 python_is_new_enough || fail "python3 is $(python3 --version 2>&1), but AccuRay needs $MINIMUM_PYTHON or later.
 $WHAT_TO_INSTALL"
 find_uv

@@ -124,28 +124,48 @@ def _pixel_angle(camera: Values, film: Values) -> float:
     return float(pixel / (1.0 + reach * reach))
 
 
-def shape_box(shape: Values, positions: NDArray[np.float32] | None) -> Array:
-    """Low and high corner (2, 3) of a box around a still shape: of a mesh's positions, or else of an analytic shape."""
-    if positions is not None:
-        points = positions.astype(np.float64)
-    elif shape["type"] == "rectangle":
+def camera_in_place(camera: Values) -> Values:
+    """The camera with a transform that holds still in its own vectors; one that moves keeps them."""
+    transform = camera["transform"]
+    if transform is None or isinstance(transform, Motion):
+        return camera
+    points = np.array([camera["position"], camera["look_at"], camera["up"]], dtype=np.float64)
+    position, look_at, up = moved(transform[None], points)[0]
+    axes = {"position": position, "look_at": look_at, "up": up - transform[:3, 3]}
+    return {**camera, **{name: tuple(map(float, vector)) for name, vector in axes.items()}}
+
+
+def shape_box(shape: Values) -> Array:
+    """Low and high corner (2, 3) of a box around a still shape that is no mesh."""
+    if shape["type"] == "rectangle":
         corner, u, v = (np.array(shape[key], dtype=np.float64) for key in ("corner", "edge_u", "edge_v"))
         points = np.array([corner, corner + u, corner + v, corner + u + v])
     else:
         center = np.array(shape["center"], dtype=np.float64)
         points = np.array([center - shape["radius"], center + shape["radius"]])
-    if len(points) == 0:
-        return np.zeros((2, 3))
     box = np.array([points.min(axis=0), points.max(axis=0)])
-    if shape["transform"] is None:
-        return box
-    points = moved(shape["transform"][None], _corners(box))[0]
+    return box if shape["transform"] is None else box_under(shape["transform"][:3].reshape(12), box)
+
+
+def box_under(row: Array, box: Array) -> Array:
+    """A box (2, 3) around a box under a transform, (12,): three rows of four."""
+    points = moved(row.reshape(1, 3, 4), _corners(box))[0]
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
 def _corners(box: Array) -> Array:
     """The eight corners (8, 3) of a box (2, 3)."""
     return np.array([[box[(c >> axis) & 1][axis] for axis in range(3)] for c in range(8)])
+
+
+def check_error(keys: Keys) -> None:
+    """Raises ValueError(problem, key) for keys that miss the motion by more than can be borne."""
+    if keys.error > MOST_OF_SIZE:
+        raise ValueError(
+            f"turns so far while the shutter is open that {len(keys.rows) - 1} straight segments miss it by "
+            f"{keys.error:.3g} of its size: allowed up to {MOST_OF_SIZE:g}",
+            "transform",
+        )
 
 
 def body_keys(motion: Motion, box: Array, eye: Eye) -> Keys:
@@ -216,7 +236,7 @@ def between_keys(keys: Array, shares: Array) -> Array:
 
 
 def moved(matrices: Array, points: Array) -> Array:
-    """Points (P, 3) under each of matrices (N, 4, 4): (N, P, 3). Without BLAS: the same bits on every machine."""
+    """Points (P, 3) under each of matrices (N, 3 or 4, 4): (N, P, 3). Without BLAS: the same bits on every machine."""
     m = matrices[:, None, :3, :]
     x, y, z = (points[None, :, axis, None] for axis in range(3))
     return np.asarray(m[..., 0] * x + m[..., 1] * y + m[..., 2] * z + m[..., 3])

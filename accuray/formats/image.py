@@ -15,6 +15,11 @@ from accuray.scene.paths import display_path
 _STORED = {"uint8": "uint8", "uint16": "uint16", "half": "half"}
 """Types that are kept as they are; all others are read as single precision floats."""
 
+_MOST_EXPANSION = 1100
+_ALWAYS_ALLOWED = 16 << 20
+"""Largest honest ratio of texels to file in bytes (deflate and JPEG reach a thousand), and bytes of texels that need
+none: a header of a few bytes must not take more memory than that."""
+
 
 def read(path: Path) -> NDArray[Any]:
     """(height, width, channels) of uint8, uint16, float16 or float32, from the top, as ``ImageReader`` says.
@@ -71,11 +76,25 @@ def _read(source: Any, path: Path) -> NDArray[Any]:
     kind = _STORED.get(str(spec.format), "float")
     channels = min(spec.nchannels, 4)
     check_size(spec.width, spec.height, channels * np.dtype(kind.replace("half", "float16")).itemsize)
-    pixels = source.read_image(0, 0, 0, channels, kind)
+    _check_expansion(spec, path)
+    try:
+        pixels = source.read_image(0, 0, 0, channels, kind)
+    except MemoryError:
+        raise ValueError(f"its {spec.width} x {spec.height} texels do not fit the memory that is free") from None
     error = source.geterror()
     if pixels is None or error:
         raise ValueError(_message(error, path))
     return np.ascontiguousarray(np.reshape(pixels, (spec.height, spec.width, channels)))
+
+
+def _check_expansion(spec: Any, path: Path) -> None:
+    """ValueError for a picture that its file is too small to hold."""
+    claimed, size = int(spec.image_bytes(native=True)), path.stat().st_size
+    if claimed > max(_ALWAYS_ALLOWED, _MOST_EXPANSION * size):
+        raise ValueError(
+            f"it claims {spec.width} x {spec.height} texels, {claimed} bytes, in a file of {size} bytes; "
+            f"allowed are {_MOST_EXPANSION} times the file, or {_ALWAYS_ALLOWED >> 20} MiB"
+        )
 
 
 def _message(error: str, path: Path) -> str:

@@ -23,9 +23,9 @@ class Radiance:
     """What ``radiance`` measures.
 
     Attributes:
-        mean: float64 (N, 3) in the colour space, or (N, n) for n wavelengths.
+        mean: float64 (N, 3) in the colour space, or (N, n) for n wavelengths; nan where no sample was finite.
         error: standard error of ``mean``, the same shape, from the scene's replicates (R - 1 degrees of freedom
-            each); infinite where ``spp`` is below 2.
+            each); infinite where fewer than two of them have a sample.
         count: samples per ray.
     """
 
@@ -146,10 +146,14 @@ def _trace(
 
 
 def _pooled(means: NDArray[np.float64], spp: int) -> Radiance:
-    """Mean over the replicates, and its standard error from their spread."""
-    filled = means[:, ~np.isnan(means).any(axis=(0, 2)), :]
-    replicates = filled.shape[1]
-    if replicates < 2:
-        return Radiance(filled.mean(axis=1), np.full(filled[:, 0].shape, np.inf), spp)
-    error = filled.std(axis=1, ddof=1) / np.sqrt(replicates)
-    return Radiance(filled.mean(axis=1), error, spp)
+    """Mean over the replicates that have samples, and its standard error from their spread.
+
+    A ray's replicate may be without any because its samples were not finite and were dropped.
+    """
+    held = ~np.isnan(means)
+    count = held.sum(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(held, means, 0.0).sum(axis=1) / count
+        squares = np.where(held, means - mean[:, None, :], 0.0) ** 2
+        error = np.sqrt(squares.sum(axis=1) / (count - 1)) / np.sqrt(count)
+    return Radiance(mean, np.where(count < 2, np.inf, error), spp)

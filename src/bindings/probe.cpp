@@ -34,7 +34,7 @@ constexpr TexturePoint middle = {{0.5f, 0.5f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 
 // its streams.
 template <class Fn>
 void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, Fn&& fn) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (material >= view.root->materials.count) throw std::invalid_argument("there is no such material");
   const Tagged bsdf = view.materials[material].bsdf;
   dispatch(Bsdfs{}, bsdf.tag, [&](auto type) {
@@ -48,7 +48,7 @@ void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<fl
 
 // Whether light is gathered from both sides of the material's surfaces.
 bool transmits(const LoadedScene& scene, uint32_t material) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (material >= view.root->materials.count) throw std::invalid_argument("there is no such material");
   return view.materials[material].transmits != 0;
 }
@@ -107,7 +107,7 @@ nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vect
 nb::object texture_values(const LoadedScene& scene, uint32_t texture, const Rows<float, 2>& uv, const Vectors& points,
                           float footprint) {
   require_rows(uv.shape(0), points.shape(0));
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (texture >= view.root->textures.count) throw std::invalid_argument("there is no such texture");
   std::vector<float> values;
   for (size_t i = 0; i < uv.shape(0); ++i) {
@@ -123,7 +123,7 @@ nb::object texture_values(const LoadedScene& scene, uint32_t texture, const Rows
 // Diameters of what the first sample of each pixel (x, y) stands for on the surface that it meets, m; 0 where it meets
 // none.
 nb::object footprints(const LoadedScene& scene, uint32_t width, uint32_t height, const Rows<uint32_t, 2>& pixels) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   const EmbreeAccel accel(scene.accel);
   const Request request{{}, 0, 1, width, height};
   std::vector<float> diameters;
@@ -141,7 +141,7 @@ nb::object footprints(const LoadedScene& scene, uint32_t width, uint32_t height,
 
 nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Rows<float, 2>& u,
                       float time) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   std::vector<float> wi, point, distance, pdf, scale;
   for (size_t i = 0; i < u.shape(0); ++i) {
@@ -165,7 +165,7 @@ nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float
 // Density with which light_sample() chooses each direction; 0 where the ray does not meet the light.
 nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Vectors& wi,
                         float time) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   const EmbreeAccel accel(scene.accel);
   const Vec3 from = {reference[0], reference[1], reference[2]};
@@ -186,7 +186,7 @@ nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<flo
 
 // Flux of a light per unit of its emission; `scene_radius` counts for infinite ones.
 double light_power(const LoadedScene& scene, uint32_t light, float scene_radius) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   const Tagged record = view.lights[light].light;
   return dispatch(Lights{}, record.tag, [&](auto type) {
@@ -197,7 +197,7 @@ double light_power(const LoadedScene& scene, uint32_t light, float scene_radius)
 // Radiance (N, 4) of an infinite light at four wavelengths in each direction.
 nb::object light_radiance(const LoadedScene& scene, uint32_t light, const std::vector<float>& wavelengths,
                           const Vectors& wi) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   std::vector<float> radiance;
   for (size_t i = 0; i < wi.shape(0); ++i) put(radiance, radiance_from(view, light, row(wi, i), carried(wavelengths)));
@@ -209,7 +209,7 @@ nb::tuple choose_lights(const LoadedScene& scene, const Vectors& points, const V
                         const Column<float>& u) {
   require_rows(points.shape(0), normals.shape(0));
   require_rows(points.shape(0), u.size());
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   std::vector<uint32_t> light;
   std::vector<float> probability;
   for (size_t i = 0; i < points.shape(0); ++i) {
@@ -223,7 +223,7 @@ nb::tuple choose_lights(const LoadedScene& scene, const Vectors& points, const V
 // The probability (N, lights) of each light at each point with its normal.
 nb::object choice_probabilities(const LoadedScene& scene, const Vectors& points, const Vectors& normals) {
   require_rows(points.shape(0), normals.shape(0));
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   const uint32_t lights = view.root->lights.count;
   std::vector<float> probability;
   for (size_t i = 0; i < points.shape(0); ++i) {
@@ -239,7 +239,7 @@ nb::list light_names(const LoadedScene& scene) {
                                    "spot",  "directional", "ies",      "environment", "sun",    "sky"};
   static_assert(Lights::size == std::size(names));
   nb::list result;
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   for (uint32_t i = 0; i < view.root->lights.count; ++i) result.append(names[view.lights[i].light.tag]);
   return result;
 }
@@ -247,7 +247,7 @@ nb::list light_names(const LoadedScene& scene) {
 nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors& directions, bool exhaustive,
                  float time) {
   require_rows(origins.shape(0), directions.shape(0));
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   const EmbreeAccel embree(scene.accel);
   const Exhaustive every{&view};
   std::vector<float> t, point, error, normal, shading;
@@ -293,7 +293,7 @@ nb::object escapes(const LoadedScene& scene, const Vectors& points, const Vector
 
 // Offsets from the pixel's centre for numbers u, on one axis.
 nb::object filter_sample(const LoadedScene& scene, const Column<float>& u) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   std::vector<float> offsets;
   dispatch(Filters{}, view.root->filter.tag, [&](auto type) {
     const auto& filter = view.as<typename decltype(type)::type>(view.root->filter);
@@ -306,7 +306,7 @@ nb::object filter_sample(const LoadedScene& scene, const Column<float>& u) {
 // Rays of the scene's camera: for points of the film, (0, 0) to (1, 1), and of the lens's unit square.
 nb::dict camera_ray(const LoadedScene& scene, const Rows<float, 2>& film, const Rows<float, 2>& lens, float time) {
   require_rows(film.shape(0), lens.shape(0));
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   std::vector<float> origins, directions;
   std::vector<uint8_t> seen;
   dispatch(Cameras{}, view.root->camera.tag, [&](auto type) {

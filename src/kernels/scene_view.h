@@ -70,12 +70,12 @@ struct GeometryRecord {
 // A copy of the geometries [first, first + count) under a transform.
 struct InstanceRecord {
   Transform to_world;
-  Transform to_object;
   uint32_t first, count;
   uint32_t lights;    // first entry in lights_of_instance, one per geometry; none: nothing emits
   uint32_t material;  // overrides the prototypes' material; none: does not
   uint32_t motion;    // index in SceneView::motions, and the transforms are those of its first key; none: it is still
 };
+static_assert(sizeof(InstanceRecord) == 68);  // there may be millions
 
 // Keys [first, first + count) of SceneView::motion_keys; see geometry/motion.h.
 struct MotionRecord {
@@ -126,6 +126,7 @@ struct Root {
   uint32_t any_opacity;     // some material lets rays through
   uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
+  uint32_t compact;     // the acceleration structure is to be small rather than fast
   uint32_t any_mipmap;  // some texture asks how much of it a ray stands for
   uint32_t camera_motion;  // index in SceneView::motions; none: the camera is still
   Tagged camera, filter, integrator;

@@ -87,11 +87,13 @@ def same(image: accuray.Image, other: accuray.Image) -> bool:
 
 
 FIRST = [[0, 1, 2, 3]]
+FIRST_THREE = [[0, 1, 2]]
 LOST: dict[str, tuple[Table, dict[str, int]]] = {
     "nan vertex": (mesh([*PLATE, [NAN, 0, 0]], [*FIRST, [0, 1, 4]]), {"nonfinite_triangles": 1}),
     "infinite vertex": (mesh([*PLATE, [0, INF, 0]], [*FIRST, [0, 1, 4]]), {"nonfinite_triangles": 1}),
     "minus infinity": (mesh([*PLATE, [0, 0, -INF]], [[4, 1, 0], *FIRST]), {"nonfinite_triangles": 1}),
     "beyond all bounds": (mesh([*PLATE, [0, 3e38, 0]], [*FIRST, [0, 1, 4]]), {"nonfinite_triangles": 1}),
+    "beyond Embree's bounds": (mesh([*PLATE, [0, 1e30, 0]], [*FIRST, [0, 1, 4]]), {"nonfinite_triangles": 1}),
     "nan in a polygon": (mesh([*PLATE, [NAN, NAN, NAN]], [*FIRST, [0, 1, 4, 2]]), {"nonfinite_triangles": 2}),
     "unused nan vertex": (mesh([*PLATE, [NAN, INF, 0]], FIRST), {}),
     "a corner twice": (mesh(PLATE, [*FIRST, [0, 1, 1]]), {"degenerate_triangles": 1}),
@@ -108,6 +110,7 @@ NOTHING: dict[str, Table] = {
     "no faces": mesh(PLATE, []),
     "only nan": mesh([[NAN, 0, 0], [0, 0, 0], [1, 0, 0]], [[0, 1, 2]]),
     "only a line": mesh([[0, 0, 0], [1, 1, 1], [2, 2, 2]], [[0, 1, 2]]),
+    "a thousand without area": mesh(PLATE, [[0, 1, 1], [2, 2, 2]] * 500),
     "lamp of nan": mesh([[NAN, 0, 0], [0, 0, 0], [1, 0, 0]], [[0, 1, 2]], "lamp"),
     "lamp without area": mesh([[0, 1, 0], [1, 1, 0], [0.5, 1, 0]], [[0, 1, 2]], "lamp"),
 }
@@ -133,6 +136,9 @@ def test_shapes_without_area_change_nothing(name: str, ballast: bool) -> None:
 REFUSED: dict[str, tuple[Table, str]] = {
     "rectangle without width": ({"type": "rectangle", "edge_u": [0, 0, 0]}, "no area"),
     "rectangle of parallel edges": ({"type": "rectangle", "edge_u": [0, 1, 0], "edge_v": [0, 0.5, 0]}, "no area"),
+    "flattened": ({**mesh(PLATE, FIRST), "transform": {"scale": [1, 0, 1]}}, "flattens"),
+    "shrunk to a point": ({**mesh(PLATE, FIRST), "transform": {"scale": 0}}, "flattens"),
+    "corners that are not there": (mesh(PLATE, [[0, 1, 4]]), "vertex 4 does not exist"),
     "disk without a direction": ({"type": "disk", "normal": [0, 0, 0]}, "no direction"),
 }
 """What is described by few numbers, so that a mistake in one of them is worth an error, and a word of the error."""
@@ -143,6 +149,27 @@ def test_single_shapes_without_area_are_errors(name: str) -> None:
     shape, word = REFUSED[name]
     with pytest.raises(accuray.SceneError, match=rf"shapes\.bad.*{word}"):
         accuray.render(room(False, {"bad": {"material": "lamp", **shape}}), spp=1)
+
+
+@every_size
+@pytest.mark.parametrize("width", [1e-6, 1e-12, 1e-20, 1e-30, 1e-38])
+def test_lamps_that_are_slivers_give_no_light_to_speak_of(width: float, ballast: bool) -> None:
+    """A lit triangle next to nothing wide: all pixels are finite, none shines, and the mean stays where it was."""
+    sliver = mesh([[0, 0, 0.5], [1, 0, 0.5], [0.5, width, 0.5]], FIRST_THREE, "lamp")
+    seen, without = render(room(ballast, {"sliver": sliver})), render(room(ballast))
+    assert np.asarray(seen).mean() == pytest.approx(np.asarray(without).mean(), rel=0.05)
+    assert np.asarray(seen).max() < 1.5 * np.asarray(without).max()
+
+
+@every_size
+def test_a_mirrored_shape_is_its_mirror_image(ballast: bool) -> None:
+    """By a transform, as by hand: negative scales turn neither the front nor the light of a lamp round."""
+    leaning = [[-1, 1.0, 0], [0.5, 1.2, 0], [0.5, 1.4, 0.7]]
+    by_hand = mesh(np.array(leaning) * [-1, 1, 1], [[0, 2, 1]], "lamp")
+    mirrored = {**mesh(leaning, FIRST_THREE, "lamp"), "transform": {"scale": [-1, 1, 1]}}
+    a, b = (np.asarray(render(room(ballast, {"bad": shape}))) for shape in (by_hand, mirrored))
+    assert a.max() > 2.0
+    assert a.mean() == pytest.approx(b.mean(), rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -317,3 +344,21 @@ def test_nothing_is_so_far_off_or_so_small_that_it_crashes(kind: str, distance: 
     assert "Traceback" not in result.stderr
     if result.returncode == 2:
         assert kind in ("point", "camera") or "shapes.x" in result.stderr
+
+
+def test_a_ray_without_a_finite_sample_has_no_radiance_and_its_neighbours_have() -> None:
+    """A lamp too bright for single precision: samples that see it are dropped, and only they."""
+    lamp = {"type": "diffuse", "reflectance": 0, "emission": {"rgb": [1e301, 1e301, 1e301]}}
+    scene = accuray.Scene.from_dict(
+        {
+            "materials": {"lamp": lamp},
+            "shapes": {"ball": {"type": "sphere", "material": "lamp"}},
+            "lights": {"sky": {"type": "constant", "radiance": "E"}},
+        }
+    )
+    for spp in (1, 8):
+        seen = accuray.radiance(scene, [[0, 0, 3]] * 2, [[0, 0, -1], [0, 0, 1]], spp)
+        assert np.isnan(seen.mean[0]).all()
+        assert np.isinf(seen.error[0]).all()
+        assert np.isfinite(seen.mean[1]).all()
+        assert np.isfinite(seen.error[1]).all() == (spp > 1)

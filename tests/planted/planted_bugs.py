@@ -35,7 +35,11 @@ def bug(name: str, file: str, old: str, new: str, *cases: str) -> Bug:
     return Bug(name, (Change(f"{KERNELS}/{file}", old, new),), cases)
 
 
-UNSCALED_LAMP = """MeshArrays unscaled = arrays;
+PLACE_MESH = """PlacedMesh place_mesh(MeshArrays arrays, const std::optional<Matrix>& transform) {
+  if (transform) move_mesh(*transform, arrays);"""
+UNSCALED_LAMP = """static MeshArrays unscaled;
+PlacedMesh place_mesh(MeshArrays arrays, const std::optional<Matrix>& transform) {
+  unscaled = arrays;
   if (transform) {
     Matrix rigid = *transform;
     for (size_t i = 0; i < rigid.size(); ++i) rigid[i] /= i % 4 == 3 ? 1.0 : scale_of(*transform);
@@ -90,8 +94,12 @@ BUGS = (
     Bug(
         "lamp-area-without-the-scale",
         (
-            Change("src/lower/builder.cpp", "if (transform) move_mesh(*transform, arrays);", UNSCALED_LAMP),
-            Change("src/lower/builder.cpp", "add_mesh_lights(arrays,", "add_mesh_lights(unscaled,"),
+            Change("src/lower/builder.cpp", PLACE_MESH, UNSCALED_LAMP),
+            Change(
+                "src/lower/builder.cpp",
+                "add_mesh_lights(positions, indices, materials_",
+                "add_mesh_lights(unscaled.positions, unscaled.indices, materials_",
+            ),
         ),
         ("C1.rectangle-scaled/light",),
     ),

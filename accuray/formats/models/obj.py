@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +87,7 @@ def _libraries(path: Path, lines: list[str], model: Model, options: Options) -> 
     where = Where(Document({}, Source(display_path(path), folder=path.parent)), ("mtllib",))
     for line in lines[:MOST_LIBRARIES]:
         for name in _file_names(line, path.parent):
-            if not (path.parent / name).exists():
+            if not os.path.exists(path.parent / name):  # also false for names that no file can have
                 model.note(f"mtllib {name}", "does not exist")
                 continue
             found = {**mtl.read(options.files.resolve(name, where)), **found}

@@ -35,6 +35,18 @@ inline Transform inverse_of(const Transform& t, float& determinant) {
   return {{{a.x, a.y, a.z, -dot(a, move)}, {b.x, b.y, b.z, -dot(b, move)}, {c.x, c.y, c.z, -dot(c, move)}}};
 }
 
+// One of equal segments of the shutter interval that a time in [0, 1] lies in, and how far along.
+struct Step {
+  uint32_t segment;
+  float share;
+};
+inline Step step_at(float time, uint32_t segments) {
+  const float scaled = time * static_cast<float>(segments);
+  uint32_t segment = static_cast<uint32_t>(max(scaled, 0.0f));
+  if (segment >= segments) segment = segments - 1;
+  return {segment, scaled - static_cast<float>(segment)};
+}
+
 // The keys about a time in [0, 1], and how far it is from the first of them to the second.
 struct Moment {
   const Transform* first;
@@ -43,12 +55,9 @@ struct Moment {
 };
 inline Moment moment_of(const SceneView& scene, uint32_t motion, float time) {
   const MotionRecord& record = scene.motions[motion];
-  const uint32_t segments = record.count - 1;
-  const float scaled = time * static_cast<float>(segments);
-  uint32_t k = static_cast<uint32_t>(max(scaled, 0.0f));
-  if (k >= segments) k = segments - 1;
-  const Transform* keys = scene.motion_keys + record.first;
-  return {keys + k, keys + k + 1, scaled - static_cast<float>(k)};
+  const Step step = step_at(time, record.count - 1);
+  const Transform* before = scene.motion_keys + record.first + step.segment;
+  return {before, before + 1, step.share};
 }
 
 inline Transform transform_at(const Moment& at) {

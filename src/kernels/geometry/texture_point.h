@@ -30,16 +30,15 @@ inline void any_tangents(Vec3 normal, TexturePoint& p) {
   p.dpdv = frame.y;
 }
 
-inline TexturePoint point_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Vec3 normal) {
-  const Triangle tri = triangle_of(scene, mesh, hit.primitive);
+inline TexturePoint point_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Vec3 normal, float time) {
+  const Triangle tri = triangle_of(scene, mesh, hit.primitive, time);
   const Vec3 e1 = tri.p1 - tri.p0;
   const Vec3 e2 = tri.p2 - tri.p0;
-  if (mesh.uvs.count == 0) return {{hit.u, hit.v}, e1, e2};
-  const float* uvs = scene.at(mesh.uvs);
-  const auto uv = [&](uint32_t vertex) { return Vec2{uvs[size_t{2} * vertex], uvs[size_t{2} * vertex + 1]}; };
-  const Vec2 a = uv(tri.i0);
-  const Vec2 b = uv(tri.i1);
-  const Vec2 c = uv(tri.i2);
+  if (mesh.uv == 0) return {{hit.u, hit.v}, e1, e2};
+  const auto uv = [&](const float* vertex) { return Vec2{vertex[mesh.uv], vertex[mesh.uv + 1]}; };
+  const Vec2 a = uv(tri.v0);
+  const Vec2 b = uv(tri.v1);
+  const Vec2 c = uv(tri.v2);
   const Vec2 ab = {b.x - a.x, b.y - a.y};
   const Vec2 ac = {c.x - a.x, c.y - a.y};
   TexturePoint p;
@@ -80,16 +79,16 @@ inline TexturePoint point_on_disk(const Disk& disk, Vec3 point) {
 inline Vec3 into_object(const SceneView& scene, const Hit& hit, float time, Vec3 v) {
   if (hit.instance == none) return v;
   const InstanceRecord& instance = scene.instances[hit.instance];
-  if (instance.motion == none) return instance.to_object.vector(v);
+  if (instance.motion == none) return instance.to_world.vector_back(v);
   return into_moving(scene, instance.motion, {{0.0f, 0.0f, 0.0f}, v, infinity, time}).direction;
 }
 
 // `point` and `normal` in the shape's own space.
-inline TexturePoint point_on_shape(const SceneView& scene, const Hit& hit, Vec3 point, Vec3 normal) {
+inline TexturePoint point_on_shape(const SceneView& scene, const Hit& hit, Vec3 point, Vec3 normal, float time) {
   const Tagged shape = scene.geometries[hit.geometry].shape;
   TexturePoint p;
   if (shape.tag == tag_of<Mesh>(Shapes{})) {
-    p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal);
+    p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal, time);
   } else if (shape.tag == tag_of<Sphere>(Shapes{})) {
     const Sphere& sphere = scene.as<Sphere>(shape);
     p = point_on_sphere(normalize(point - sphere.center), sphere.radius);
@@ -107,22 +106,25 @@ inline TexturePoint point_on_shape(const SceneView& scene, const Hit& hit, Vec3 
 ACCURAY_NOINLINE inline TexturePoint point_on_instance(const SceneView& scene, Hit hit, Vec3 point, Vec3 normal,
                                                        float time) {
   const InstanceRecord& instance = scene.instances[hit.instance];
-  Placement at{instance.to_world, instance.to_object, 1.0f};
+  Transform to_world = instance.to_world;
   if (instance.motion != none) {
-    at = placement(moment_of(scene, instance.motion, time));
+    const Placement at = placement(moment_of(scene, instance.motion, time));
+    to_world = at.to_world;
+    point = at.to_object.point(point);
     normal = normal_by(at.to_world, normal);
   } else {
-    normal = normalize(at.to_object.vector(normal));
+    point = to_world.point_back(point);
+    normal = normalize(to_world.vector_back(normal));
   }
-  TexturePoint p = point_on_shape(scene, hit, at.to_object.point(point), normal);
-  p.dpdu = at.to_world.vector(p.dpdu);
-  p.dpdv = at.to_world.vector(p.dpdv);
+  TexturePoint p = point_on_shape(scene, hit, point, normal, time);
+  p.dpdu = to_world.vector(p.dpdu);
+  p.dpdv = to_world.vector(p.dpdv);
   return p;
 }
 
 // `hit` must have met something at this time, and `surface` be what surface_at() made of it.
 inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const Surface& surface, float time) {
-  if (hit.instance == none) return point_on_shape(scene, hit, surface.point, surface.normal);
+  if (hit.instance == none) return point_on_shape(scene, hit, surface.point, surface.normal, time);
   return point_on_instance(scene, hit, surface.point, surface.normal, time);
 }
 
