@@ -119,7 +119,7 @@ def test_no_ray_leaves_a_moving_closed_mesh(time: float) -> None:
 
 @pytest.mark.parametrize("turns", [0.1, 0.5, 2.0])
 def test_keys_follow_the_motion_as_closely_as_promised(turns: float) -> None:
-    """The body is within 1e-4 of its size, or a tenth of a pixel, of where it should be, or the keys say how far not."""
+    """The body is within 1e-4 of its size, or a tenth of a pixel, of its place, or the keys say how far not."""
     box = np.array([[-1.0, -0.2, -0.1], [1.0, 0.2, 0.1]])
     spinning = motion(
         keyed({"rotate": {"axis": [0, 0, 1], "turns": 0}}, {"rotate": {"axis": [0, 0, 1], "turns": turns}})
