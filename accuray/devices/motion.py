@@ -1,12 +1,13 @@
 """How many straight segments a motion needs: keys at equal steps of time, between which matrices change linearly.
 
-Embree takes 129 keys at most. A motion gets as many as keep every point of the body within a tenth of a pixel, or
-within 1e-4 of the body's size if that is more, of where it really is.
+Embree takes 129 keys at most. A motion gets as many as keep every point of the body within a fiftieth of a pixel, or
+within 1e-4 of the body's size if that is more, of where it really is; a tenth of a pixel will do where they run out.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,7 +54,10 @@ COUNTS = (
 """Numbers of segments that are tried. The ends of many of them meet keys at even times."""
 
 OF_SIZE = 1e-4
-OF_PIXEL = 0.1
+OF_PIXEL = 0.02
+LOOSE = 5.0
+"""What is aimed at in pixels, times this, is not worth a message."""
+
 MOST_OF_SIZE = 1e-2
 """Error, over the size of the body, from which a motion of 128 segments is refused."""
 
@@ -169,19 +173,20 @@ def body_keys(motion: Motion, box: Array, eye: Eye) -> Keys:
     corners = _corners(box)
     ends = moved(np.array([motion.at(share) for share in np.linspace(0.0, 1.0, 9)]), corners)
     size = float(_lengths(ends[:, :1] - ends).max())
-    allowed = max(OF_SIZE * size, OF_PIXEL * eye.pixel_at(ends.reshape(-1, 3)))
+    pixel = OF_PIXEL * eye.pixel_at(ends.reshape(-1, 3))
+    aim, allowed = max(OF_SIZE * size, pixel), max(OF_SIZE * size, LOOSE * pixel)
 
     def error(true: Array, straight: Array) -> float:
         return float(_lengths(moved(true, corners) - moved(straight, corners)).max())
 
-    matrices, worst = _segmented(motion, error, allowed)
+    matrices, worst = _segmented(motion, error, aim)
     return Keys(_rows(matrices), worst / size if worst > allowed and size > 0.0 else 0.0)
 
 
 def camera_keys(motion: Motion, position: tuple[float, ...], eye: Eye) -> Keys:
     """The keys of a camera that stands at ``position`` before it is moved.
 
-    It looks within a tenth of a pixel of where it should, and stands within 1e-4 of its way of it.
+    It looks within a fiftieth of a pixel of where it should, and stands within 1e-4 of its way of it.
     """
     here = np.array([position], dtype=np.float64)
     ahead = here + np.concatenate([np.eye(3), -np.eye(3)])
@@ -197,24 +202,29 @@ def camera_keys(motion: Motion, position: tuple[float, ...], eye: Eye) -> Keys:
         return max(apart / (OF_SIZE * way) if way > 0.0 else 0.0, turned / (OF_PIXEL * angle))
 
     matrices, worst = _segmented(motion, error, 1.0)
-    return Keys(_rows(matrices), worst * OF_SIZE if worst > 1.0 else 0.0)
+    return Keys(_rows(matrices), worst * OF_SIZE if worst > LOOSE else 0.0)
 
 
 def _segmented(motion: Motion, error: Any, allowed: float) -> tuple[Array, float]:
     """The matrices (K, 4, 4) of the fewest segments whose error is allowed, else of the most, and the error."""
     floor = motion.degrees / MOST_DEGREES
+    at_keys = _matrices(motion, motion.bends)
     for count in COUNTS:
         if count < floor and count != COUNTS[-1]:
             continue
-        keys = np.array([motion.at(k / count) for k in range(count + 1)])
-        shares = [(k + part) / count for k in range(count) for part in PARTS] + list(motion.bends)
-        true = np.array([motion.at(share) for share in shares])
-        worst = error(true, between_keys(keys, np.array(shares)))
+        keys = _matrices(motion, [k / count for k in range(count + 1)])
+        shares = [(k + part) / count for k in range(count) for part in PARTS]
+        true = np.concatenate([_matrices(motion, shares), at_keys])
+        worst = error(true, between_keys(keys, np.array([*shares, *motion.bends])))
         if worst <= allowed:
             break
         # On a curve the error falls with the square of the number: no use in trying much smaller ones.
         floor = 0.5 * count * math.sqrt(worst / allowed) if allowed > 0.0 and not motion.bends else 0.0
     return keys, worst
+
+
+def _matrices(motion: Motion, shares: Sequence[float]) -> Array:
+    return np.array([motion.at(share) for share in shares]).reshape(-1, 4, 4)
 
 
 def between_keys(keys: Array, shares: Array) -> Array:

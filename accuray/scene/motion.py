@@ -10,6 +10,7 @@ As in ``transforms``, everything has the same bits on every machine.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -49,7 +50,7 @@ ALLOWED = (
     "{keys = [{time = 0, translate = [x, y, z], rotate = {axis = [x, y, z], turns = 1}, scale = s}, ...]}, or in a key "
     "a matrix, a look_at, or a list of steps"
 )
-MOST_KEYS = 100_000
+MOST_KEYS = 10_000
 PARALLEL = 1e-9
 """Sine of the largest angle between axes that count as one."""
 
@@ -114,12 +115,11 @@ class Motion:
         return (self.open, self.close, self.times, self.poses)
 
     def _rows(self, time: float) -> Rows:
-        if time <= self.times[0]:
-            return self.poses[0].rows()
-        for (begin, end), (a, b) in zip(pairwise(self.times), pairwise(self.poses), strict=True):
-            if time < end:
-                return between(a, b, (time - begin) / (end - begin))
-        return self.poses[-1].rows()
+        after = bisect_right(self.times, time)
+        if after in (0, len(self.times)):
+            return self.poses[min(after, len(self.times) - 1)].rows()
+        begin, end = self.times[after - 1 : after + 1]
+        return between(self.poses[after - 1], self.poses[after], (time - begin) / (end - begin))
 
 
 def between(a: Pose, b: Pose, share: float) -> Rows:
@@ -211,12 +211,17 @@ def _within(times: list[float], poses: list[Pose], clock: Clock) -> Motion:
 
 
 def _key(key: Any, where: Where) -> tuple[float, Pose]:
+    import numpy as np
+
     if not isinstance(key, dict) or "time" not in key:
         raise where.error("is not a key", value=key, allowed=ALLOWED)
     time = quantity(TIME, key["time"], where.child("time"))
     step = {name: value for name, value in key.items() if name != "time"}
     if set(step) <= set(PARTS):
-        return time, _written(step, where)
+        pose = _written(step, where)
+        if flattens(np.array(pose.rows(), dtype=np.float64)):
+            raise where.error("flattens", allowed="a transform that leaves bodies a volume")
+        return time, pose
     matrix = (
         parse_transform(step["steps"], where.child("steps")) if set(step) == {"steps"} else parse_transform(step, where)
     )

@@ -126,8 +126,8 @@ struct Root {
   uint32_t any_opacity;     // some material lets rays through
   uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
-  uint32_t compact;     // the acceleration structure is to be small rather than fast
-  uint32_t any_mipmap;  // some texture asks how much of it a ray stands for
+  uint32_t compact;        // the acceleration structure is to be small rather than fast
+  uint32_t any_mipmap;     // some texture asks how much of it a ray stands for
   uint32_t camera_motion;  // index in SceneView::motions; none: the camera is still
   Tagged camera, filter, integrator;
   Slice<MaterialRecord> materials;

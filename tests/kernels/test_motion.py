@@ -78,13 +78,13 @@ def test_the_engine_finds_what_the_exhaustive_search_finds(time: float) -> None:
     assert np.count_nonzero((fast["geometry"] != NONE) != hit) <= 1
     both = hit & (fast["geometry"] != NONE)
     cosine = np.abs((slow["normal"] * directions).sum(axis=1))[both]
-    near = np.abs(fast["t"] - slow["t"])[both] <= 2e-5 / np.maximum(0.02, cosine)
+    near = np.abs(fast["t"][both] - slow["t"][both]) <= 2e-5 / np.maximum(0.02, cosine)
     assert np.count_nonzero(~near) <= 1
     for key in ("geometry", "instance", "primitive"):
         assert np.count_nonzero(fast[key][both][near] != slow[key][both][near]) <= 1, key
     # Points are where the rays meet them, whatever the body did meanwhile.
-    there = origins + fast["t"][:, None] * directions
-    assert np.linalg.norm(there - fast["point"], axis=1)[both].max() < 1e-4
+    there = origins[both] + fast["t"][both, None] * directions[both]
+    assert np.linalg.norm(there - fast["point"][both], axis=1).max() < 1e-4
     toward = (fast["normal"] * directions).sum(axis=1)[both]
     inside = np.linalg.norm(origins, axis=1)[both] < 3.5
     assert (toward < 0.0)[~inside].mean() > 0.9, "front sides stay front sides"
@@ -119,7 +119,7 @@ def test_no_ray_leaves_a_moving_closed_mesh(time: float) -> None:
 
 @pytest.mark.parametrize("turns", [0.1, 0.5, 2.0])
 def test_keys_follow_the_motion_as_closely_as_promised(turns: float) -> None:
-    """The body is within 1e-4 of its size of where it should be, or within a tenth of a pixel, or the keys say not."""
+    """The body is within 1e-4 of its size, or a tenth of a pixel, of its place, or the keys say how far not."""
     box = np.array([[-1.0, -0.2, -0.1], [1.0, 0.2, 0.1]])
     spinning = motion(
         keyed({"rotate": {"axis": [0, 0, 1], "turns": 0}}, {"rotate": {"axis": [0, 0, 1], "turns": turns}})
@@ -141,7 +141,8 @@ def test_keys_follow_the_motion_as_closely_as_promised(turns: float) -> None:
         allowed = max(1e-4 * size, 0.1 * 3.0 / pixels)
         assert worst <= 1.01 * max(allowed, keys.error * size)
         assert (keys.error > 0.0) == (worst > allowed)
-    assert counts[0] < counts[1] <= 129
+    assert counts[0] <= counts[1] <= 129
+    assert counts[0] < 60 or turns > 1.0
 
 
 def test_a_straight_motion_takes_two_keys_and_one_that_bends_a_key_there() -> None:
@@ -253,10 +254,10 @@ def picture(body: dict[str, Any], camera: dict[str, Any], **more: Any) -> Any:
         "shapes": shapes,
         "film": FRAME,
         "animation": {**OPEN, **more},
-        "camera": {"type": "perspective", "position": [0, 0, 6], "look_at": [0, 0, 0], **camera},
+        "camera": {"type": "perspective", "position": [0, 0, 4.5], "look_at": [0, 0, 0], **camera},
         "integrator": {"type": "path", "max_depth": 1},
     }
-    image = accuray.render(accuray.Scene.from_dict({"accuray": 1, **scene}), spp=256, seed=SEED + len(camera))
+    image = accuray.render(accuray.Scene.from_dict({"accuray": 1, **scene}), spp=1024, seed=SEED + len(camera))
     return np.asarray(image, dtype=np.float64)[:, :, 1], np.asarray(image.error, dtype=np.float64)[:, :, 1]
 
 
@@ -265,16 +266,16 @@ def test_a_body_that_moves_is_a_camera_that_moves_the_other_way(shape: str) -> N
     there = keyed({"translate": [-1, 0, 0]}, {"translate": [1, 0.5, 0]})
     back = keyed({"translate": [1, 0, 0]}, {"translate": [-1, -0.5, 0]})
     a, b = picture({"transform": there}, {}, shutter_shape=shape), picture({}, {"transform": back}, shutter_shape=shape)
-    result = blocks(*a, *b, size=4, power=0.02)
+    result = blocks(*a, *b, size=8, power=0.03)
     assert result, result.reason
     still = picture({}, {}, shutter_shape=shape)
-    assert blocks(*a, *still, size=4, power=0.02).verdict == "fail", "the comparison sees no motion"
+    assert blocks(*a, *still, size=8, power=0.03).verdict == "fail", "the comparison sees no motion"
 
 
 def test_a_body_that_turns_is_a_camera_that_circles_it() -> None:
     first, last = ({"rotate": {"axis": [0, 1, 0], "angle": angle}} for angle in (-35, 35))
     a, b = picture({"transform": keyed(first, last)}, {}), picture({}, {"transform": keyed(last, first)})
-    result = blocks(*a, *b, size=4, power=0.02)
+    result = blocks(*a, *b, size=8, power=0.03)
     assert result, result.reason
 
 

@@ -165,7 +165,7 @@ STEP = {"time": 0, "translate": [0, 0, 0]}
         ({"keys": [1]}, "keys[0]", "not a key"),
         ({"keys": [{"translate": [0, 0, 0]}]}, "keys[0]", "not a key"),
         ({"keys": [STEP, STEP]}, "keys[1].time", "not later"),
-        ({"keys": [{"time": "1 m"}]}, "keys[0].time", ""),
+        ({"keys": [{"time": "1 m"}]}, "keys[0].time", "time"),
         ({"keys": [{"time": 0, "turn": 1}]}, "keys[0].turn", "part of a transform"),
         ({"keys": [{"time": 0, "rotate": {"axis": Y, "angle": 1, "turns": 1}}]}, "keys[0].rotate", "not a rotation"),
         ({"keys": [{"time": 0, "rotate": {"axis": Y, "turns": "x"}}]}, "keys[0].rotate.turns", "not a number"),

@@ -109,31 +109,40 @@ inline void to_world(const InstanceRecord& instance, Surface& s) {
   s.shading = normalize(m.vector(s.shading));
 }
 
-inline void place_on_still(const SceneView& scene, const InstanceRecord& instance, const Ray& ray, const Hit& hit,
+inline void place_on_still(const SceneView& scene, const InstanceRecord& instance, Ray ray, const Hit& hit,
                            Surface& s) {
-  Ray local = ray;
-  local.origin = instance.to_world.point_back(ray.origin);
-  local.direction = instance.to_world.vector_back(ray.direction);
+  ray.origin = instance.to_world.point_back(ray.origin);
+  ray.direction = instance.to_world.vector_back(ray.direction);
   const Transform& m = instance.to_world;
   const float scale = length({m.m[0][0], m.m[1][0], m.m[2][0]});
-  const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, local.direction, local.origin))) / scale;
-  place_on_shape(scene, scene.geometries[hit.geometry], local, hit, rounding, s);
+  const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, ray.direction, ray.origin))) / scale;
+  place_on_shape(scene, scene.geometries[hit.geometry], ray, hit, rounding, s);
   to_world(instance, s);
 }
 
-// On an instance that moves: position, error and normals. Never inlined: still scenes do not pay for it.
-ACCURAY_NOINLINE inline Surface place_on_moving(const SceneView& scene, Ray ray, Hit hit) {
-  const Moment moment = moment_of(scene, scene.instances[hit.instance].motion, ray.time);
+inline void place_on_moving(const SceneView& scene, const InstanceRecord& instance, Ray ray, const Hit& hit,
+                            Surface& s) {
+  const Moment moment = moment_of(scene, instance.motion, ray.time);
   const Placement at = placement(moment);
   ray.origin = at.to_object.point(ray.origin);
   ray.direction = at.to_object.vector(ray.direction);
   const Vec3 rounding = at.to_object.spread(rounding_at(moment, fma(hit.t, ray.direction, ray.origin)));
-  Surface s;
   place_on_shape(scene, scene.geometries[hit.geometry], ray, hit, max_component(rounding), s);
   s.error = at.to_world.spread(s.error) + rounding_at(moment, s.point);
   s.point = at.to_world.point(s.point);
   s.normal = normal_by(at.to_object, s.normal);
   s.shading = normal_by(at.to_object, s.shading);
+}
+
+// Position, error and normals on an instance. Never inlined: threads of a GPU have little memory.
+ACCURAY_NOINLINE inline Surface place_on_instance(const SceneView& scene, Ray ray, Hit hit) {
+  const InstanceRecord& instance = scene.instances[hit.instance];
+  Surface s;
+  if (instance.motion == none) {
+    place_on_still(scene, instance, ray, hit, s);
+  } else {
+    place_on_moving(scene, instance, ray, hit, s);
+  }
   return s;
 }
 
@@ -141,19 +150,14 @@ ACCURAY_NOINLINE inline Surface place_on_moving(const SceneView& scene, Ray ray,
 inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
   const GeometryRecord& geometry = scene.geometries[hit.geometry];
   Surface s;
-  s.material = geometry.material;
   uint32_t lights = geometry.lights;
   if (hit.instance == none) {
     place_on_shape(scene, geometry, ray, hit, 0.0f, s);
+    s.material = geometry.material;
   } else {
+    s = place_on_instance(scene, ray, hit);
     const InstanceRecord& instance = scene.instances[hit.instance];
-    if (instance.motion != none) [[unlikely]] {
-      s = place_on_moving(scene, ray, hit);
-      s.material = geometry.material;
-    } else {
-      place_on_still(scene, instance, ray, hit, s);
-    }
-    if (instance.material != none) s.material = instance.material;
+    s.material = instance.material == none ? geometry.material : instance.material;
     lights = instance.lights == none ? none : scene.lights_of_instance[instance.lights + hit.geometry - instance.first];
   }
   s.light = lights == none ? none : scene.light_of_primitive[lights + hit.primitive];

@@ -102,26 +102,30 @@ inline TexturePoint point_on_shape(const SceneView& scene, const Hit& hit, Vec3 
   return p;
 }
 
-ACCURAY_NOINLINE inline TexturePoint point_on_moving(const SceneView& scene, Hit hit, Vec3 point, Vec3 normal,
-                                                     float time) {
-  const Placement at = placement(moment_of(scene, scene.instances[hit.instance].motion, time));
-  TexturePoint p = point_on_shape(scene, hit, at.to_object.point(point), normal_by(at.to_world, normal), time);
-  p.dpdu = at.to_world.vector(p.dpdu);
-  p.dpdv = at.to_world.vector(p.dpdv);
+// Never inlined: threads of a GPU have little memory.
+ACCURAY_NOINLINE inline TexturePoint point_on_instance(const SceneView& scene, Hit hit, Vec3 point, Vec3 normal,
+                                                       float time) {
+  const InstanceRecord& instance = scene.instances[hit.instance];
+  Transform to_world = instance.to_world;
+  if (instance.motion != none) {
+    const Placement at = placement(moment_of(scene, instance.motion, time));
+    to_world = at.to_world;
+    point = at.to_object.point(point);
+    normal = normal_by(at.to_world, normal);
+  } else {
+    point = to_world.point_back(point);
+    normal = normalize(to_world.vector_back(normal));
+  }
+  TexturePoint p = point_on_shape(scene, hit, point, normal, time);
+  p.dpdu = to_world.vector(p.dpdu);
+  p.dpdv = to_world.vector(p.dpdv);
   return p;
 }
 
 // `hit` must have met something at this time, and `surface` be what surface_at() made of it.
 inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const Surface& surface, float time) {
   if (hit.instance == none) return point_on_shape(scene, hit, surface.point, surface.normal, time);
-  const InstanceRecord& instance = scene.instances[hit.instance];
-  if (instance.motion != none) [[unlikely]]
-    return point_on_moving(scene, hit, surface.point, surface.normal, time);
-  TexturePoint p = point_on_shape(scene, hit, instance.to_world.point_back(surface.point),
-                                  normalize(instance.to_world.vector_back(surface.normal)), time);
-  p.dpdu = instance.to_world.vector(p.dpdu);
-  p.dpdv = instance.to_world.vector(p.dpdv);
-  return p;
+  return point_on_instance(scene, hit, surface.point, surface.normal, time);
 }
 
 }  // namespace accuray
