@@ -5,32 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from accuray.scene import memory
 from accuray.scene.paths import display_path
 
-
-def read_obj(path: Path) -> dict[str, Any]:
-    """Wavefront OBJ: arrays as ``accuray.scene.meshes.MeshReader`` says."""
-    from accuray._core import mesh
-
-    return _arrays(mesh.read_obj(display_path(path)))
+TEXT = 6
+"""Bytes of a file for each byte of its arrays, at most: numbers as text."""
 
 
-def read_ply(path: Path) -> dict[str, Any]:
-    """Stanford PLY, ASCII or binary: arrays as ``accuray.scene.meshes.MeshReader`` says."""
-    from accuray._core import mesh
-
-    return _arrays(mesh.read_ply(display_path(path)))
-
-
-def read_stl(path: Path) -> dict[str, Any]:
-    """STL, ASCII or binary: arrays as ``accuray.scene.meshes.MeshReader`` says."""
-    from accuray._core import mesh
-
-    return _arrays(mesh.read_stl(display_path(path)))
-
-
-def _arrays(mesh: Any) -> dict[str, Any]:
-    """The reader's arrays under the names of the shape parameters."""
+def read(path: Path) -> dict[str, Any]:
+    """Wavefront OBJ, Stanford PLY or STL, by its ending: arrays as ``accuray.scene.meshes.MeshReader`` says."""
+    mesh = read_compiled(path)
     return {
         "positions": mesh.positions,
         "faces": mesh.indices,
@@ -39,3 +23,14 @@ def _arrays(mesh: Any) -> dict[str, Any]:
         "colors": mesh.colors,
         "report": mesh.report,
     }
+
+
+def read_compiled(path: Path) -> Any:
+    """The compiled reader's mesh. Raises ValueError for a wrong file, and for one whose arrays do not fit in memory."""
+    from accuray._core import mesh
+
+    if path.suffix.lower() == ".ply":
+        return mesh.read_ply(display_path(path), memory.available_bytes())
+    size = path.stat().st_size
+    memory.check_fits(size // TEXT, f"a mesh from {size} bytes")
+    return (mesh.read_obj if path.suffix.lower() == ".obj" else mesh.read_stl)(display_path(path))

@@ -59,12 +59,12 @@ void undo_srgb(std::vector<float>& colors) {
   }
 }
 
-template <mesh::MeshData (*Read)(const std::string&)>
-PyMesh read(const std::string& path) {
+template <auto Read, class... Limit>
+PyMesh read(const std::string& path, Limit... limit) {
   mesh::MeshData data;
   {
     const nb::gil_scoped_release release;
-    data = Read(path);
+    data = Read(path, limit...);
     if (data.srgb_colors) undo_srgb(data.colors);
   }
   return to_python(std::move(data));
@@ -114,7 +114,8 @@ void bind_mesh(nb::module_& module) {
       .def_ro("libraries", &PyMesh::libraries, "What an OBJ file says after mtllib.")
       .def_ro("report", &PyMesh::report);
   m.def("read_obj", &read<&mesh::read_obj>, "path"_a, "Reads a Wavefront OBJ file.");
-  m.def("read_ply", &read<&mesh::read_ply>, "path"_a, "Reads a PLY file.");
+  m.def("read_ply", &read<&mesh::read_ply, uint64_t>, "path"_a, "most_bytes"_a = ~uint64_t{0},
+        "Reads a PLY file, if its arrays take at most so many bytes.");
   m.def("read_stl", &read<&mesh::read_stl>, "path"_a, "Reads an STL file.");
   m.def("repair", &repair, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(),
         "Drops and counts what cannot be rendered.");
