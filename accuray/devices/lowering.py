@@ -99,7 +99,7 @@ class _Lowering:
         builder, film = self.builder, self.scene.film
         for name, texture in self.scene.textures.items():
             self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        shown, nested = self.instancing.shown(), self.instancing.nested()
+        shown, nested = self.instancing.shown, self.instancing.nested
         total = self.instancing.total
         self._guard("shapes", lambda: self.budget.admit_instances(total(shown), total(nested)))
         spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.instancing, self.triangles)
@@ -184,7 +184,7 @@ class _Lowering:
         for name, table in self.scene.shapes.items():
             if table["type"] != "instance" and not table["prototype"]:
                 self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
-        shown = self.instancing.shown()
+        shown = self.instancing.shown
         self.builder.reserve_instances(self.instancing.total(shown))
         for name in shown:
             self._guard(f"shapes.{name}", partial(self._add_instances, name))
