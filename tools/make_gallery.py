@@ -73,6 +73,7 @@ SHOTS = {
     "depth-of-field": Shot("depth-of-field"),
     "environment": Shot("environment"),
     "sunny": Shot("sunny"),
+    "tea-hill": Shot("tea-hill"),
     "glass-and-texture": Shot("glass-and-texture"),
     "cornell-box": Shot("cornell-box"),
     "mirror-and-glass": Shot("mirror-and-glass"),

@@ -91,7 +91,7 @@ def _areas_with(
         if shape["type"] != "instance" and shape["material"] == material and not shape["prototype"]
     ]
     own: dict[str, float] = {}
-    for name in instancing.shown():
+    for name in instancing.shown:
         factor = _motion_factor(shapes[name]["transform"], material)
         for group, rows in instancing.copies(name):
             for member in group.members:

@@ -70,10 +70,12 @@ class Instancing:
         """How many instances of groups some instance shapes come to together."""
         return sum(self.counts[name].total() for name in names)
 
+    @cached_property
     def shown(self) -> list[str]:
         """Names of the instance shapes that the scene shows, in its order."""
         return [name for name, shape in self._shapes.items() if shape["type"] == "instance" and not shape["prototype"]]
 
+    @cached_property
     def nested(self) -> list[str]:
         """Names of those that others show at least once, each after those that it is made of."""
         found: set[str] = set()
@@ -86,7 +88,7 @@ class Instancing:
 
     def copies(self, name: str) -> Iterator[Copies]:
         """All instances of groups that an instance shape comes to, in pieces of bounded size."""
-        for member in self.nested():
+        for member in self.nested:
             if member not in self._whole:
                 self._whole[member] = _joined(self._own(member))
         yield from self._own(name)

@@ -76,7 +76,7 @@ class ShapeLowering:
 
     def admit(self) -> None:
         """Refuses more instances than memory holds. Raises SceneError."""
-        shown, nested = self.instancing.shown(), self.instancing.nested()
+        shown, nested = self.instancing.shown, self.instancing.nested
         total = self.instancing.total
         self._guard("shapes", lambda: self.budget.admit_instances(total(shown), total(nested)))
 
@@ -98,7 +98,7 @@ class ShapeLowering:
             table = {**self.scene.shapes[name], "transform": None, "prototype": True}
             number = self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
             self._guard(f"shapes.{name}", partial(self._add_moving, name, number, (name,), IDENTITY, None))
-        shown = self.instancing.shown()
+        shown = self.instancing.shown
         self.builder.reserve_instances(self.instancing.total(shown) + len(moving))
         for name in shown:
             self._guard(f"shapes.{name}", partial(self._add_instances, name))

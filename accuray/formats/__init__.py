@@ -43,9 +43,9 @@ SCENE_READERS: dict[str, SceneReader] = {
 }
 
 MESH_READERS: dict[str, MeshReader] = {
-    ".obj": mesh.read_obj,
-    ".ply": mesh.read_ply,
-    ".stl": mesh.read_stl,
+    ".obj": mesh.read,
+    ".ply": mesh.read,
+    ".stl": mesh.read,
 }
 
 MODEL_READERS: dict[str, ModelReader] = {

@@ -5,32 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from accuray.scene import memory
 from accuray.scene.paths import display_path
 
-
-def read_obj(path: Path, polygons: bool = False) -> dict[str, Any]:
-    """Wavefront OBJ: arrays as ``accuray.scene.meshes.MeshReader`` says."""
-    from accuray._core import mesh
-
-    return _arrays(mesh.read_obj(display_path(path), polygons))
+TEXT = 6
+"""Bytes of a file for each byte of its arrays, at most: numbers as text."""
 
 
-def read_ply(path: Path, polygons: bool = False) -> dict[str, Any]:
-    """Stanford PLY, ASCII or binary: arrays as ``accuray.scene.meshes.MeshReader`` says."""
-    from accuray._core import mesh
-
-    return _arrays(mesh.read_ply(display_path(path), polygons))
-
-
-def read_stl(path: Path, polygons: bool = False) -> dict[str, Any]:
-    """STL, ASCII or binary, which has only triangles: arrays as ``accuray.scene.meshes.MeshReader`` says."""
-    from accuray._core import mesh
-
-    return _arrays(mesh.read_stl(display_path(path)))
-
-
-def _arrays(mesh: Any) -> dict[str, Any]:
-    """The reader's arrays under the names of the shape parameters."""
+def read(path: Path, polygons: bool = False) -> dict[str, Any]:
+    """Wavefront OBJ, Stanford PLY or STL, by its ending: arrays as ``accuray.scene.meshes.MeshReader`` says."""
+    mesh = read_compiled(path, polygons)
     return {
         "positions": mesh.positions,
         "faces": mesh.indices,
@@ -40,3 +24,16 @@ def _arrays(mesh: Any) -> dict[str, Any]:
         "polygons": mesh.polygons,
         "report": mesh.report,
     }
+
+
+def read_compiled(path: Path, polygons: bool = False) -> Any:
+    """The compiled reader's mesh; with polygons a control mesh. Raises ValueError for a wrong file, or one too large for memory."""
+    from accuray._core import mesh
+
+    if path.suffix.lower() == ".ply":
+        return mesh.read_ply(display_path(path), polygons, memory.available_bytes())
+    size = path.stat().st_size
+    memory.check_fits(size // TEXT, f"a mesh from {size} bytes")
+    if path.suffix.lower() == ".obj":
+        return mesh.read_obj(display_path(path), polygons)
+    return mesh.read_stl(display_path(path))

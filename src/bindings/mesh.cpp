@@ -119,8 +119,11 @@ void bind_mesh(nb::module_& module) {
       "path"_a, "polygons"_a = false, "Reads a Wavefront OBJ file; with its polygons, as a control mesh.");
   m.def(
       "read_ply",
-      [](const std::string& path, bool polygons) { return read([&] { return mesh::read_ply(path, polygons); }); },
-      "path"_a, "polygons"_a = false, "Reads a PLY file; with its polygons, as a control mesh.");
+      [](const std::string& path, bool polygons, uint64_t most_bytes) {
+        return read([&] { return mesh::read_ply(path, polygons, most_bytes); });
+      },
+      "path"_a, "polygons"_a = false, "most_bytes"_a = ~uint64_t{0},
+      "Reads a PLY file, if its arrays take at most so many bytes; with its polygons, as a control mesh.");
   m.def(
       "read_stl", [](const std::string& path) { return read([&] { return mesh::read_stl(path); }); }, "path"_a,
       "Reads an STL file.");

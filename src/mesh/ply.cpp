@@ -43,8 +43,8 @@ constexpr size_t kSkip = kSlots;
 template <class Values>
 class PlyReader {
  public:
-  PlyReader(Input& input, const PlyHeader& header, bool keep_polygons)
-      : name_(input.name()), header_(header), values_(input), keep_polygons_(keep_polygons) {}
+  PlyReader(Input& input, const PlyHeader& header, bool keep_polygons, uint64_t most_bytes)
+      : name_(input.name()), header_(header), most_bytes_(most_bytes), values_(input), keep_polygons_(keep_polygons) {}
 
   MeshData read() {
     find_roles();
@@ -168,7 +168,17 @@ class PlyReader {
     return size;
   }
 
+  // The arrays of an element's rows against the memory that there is; the rows are in the file.
+  void claim_memory(const PlyElement& element, uint64_t bytes_per_row) {
+    claimed_ += bytes_per_row * element.count;
+    if (claimed_ <= most_bytes_) return;
+    fail_header(element.line, "element " + element.name + " with " + std::to_string(element.count) + " rows",
+                "takes more memory than there is, " + std::to_string(claimed_) + " bytes",
+                std::to_string(most_bytes_) + " bytes");
+  }
+
   void read_vertices() {
+    claim_memory(*vertex_, 12 + (has_normals_ ? 12u : 0u) + (has_uvs_ ? 8u : 0u) + (has_colors() ? 16u : 0u));
     mesh_.positions.reserve(3 * vertex_->count);
     if (has_normals_) mesh_.normals.reserve(3 * vertex_->count);
     if (has_uvs_) mesh_.uvs.reserve(2 * vertex_->count);
@@ -197,6 +207,7 @@ class PlyReader {
   bool has_colors() const { return color_white_ > 0.0f; }
 
   void read_faces() {
+    claim_memory(*face_, 12);
     mesh_.indices.reserve(3 * face_->count);
     for (uint64_t i = 0; i < face_->count; ++i) {
       values_.begin_row();
@@ -268,6 +279,8 @@ class PlyReader {
 
   std::string name_;
   const PlyHeader& header_;
+  uint64_t most_bytes_;
+  uint64_t claimed_ = 0;
   Values values_;
   bool keep_polygons_;
   const PlyElement* vertex_ = nullptr;
@@ -280,25 +293,27 @@ class PlyReader {
   MeshData mesh_;
 };
 
-MeshData read(Input input, bool keep_polygons) {
+MeshData read(Input input, bool keep_polygons, uint64_t most_bytes) {
   PlyHeader header = read_ply_header(input);
   switch (header.format) {
     case PlyFormat::binary_little_endian:
-      return PlyReader<BinaryValues<std::endian::little>>(input, header, keep_polygons).read();
+      return PlyReader<BinaryValues<std::endian::little>>(input, header, keep_polygons, most_bytes).read();
     case PlyFormat::binary_big_endian:
-      return PlyReader<BinaryValues<std::endian::big>>(input, header, keep_polygons).read();
+      return PlyReader<BinaryValues<std::endian::big>>(input, header, keep_polygons, most_bytes).read();
     case PlyFormat::ascii:
       break;
   }
-  return PlyReader<AsciiValues>(input, header, keep_polygons).read();
+  return PlyReader<AsciiValues>(input, header, keep_polygons, most_bytes).read();
 }
 
 }  // namespace
 
-MeshData read_ply(const std::string& path, bool keep_polygons) { return read(Input::open(path), keep_polygons); }
+MeshData read_ply(const std::string& path, bool keep_polygons, uint64_t most_bytes) {
+  return read(Input::open(path), keep_polygons, most_bytes);
+}
 
 MeshData read_ply_bytes(std::string_view bytes, const std::string& name, bool keep_polygons) {
-  return read(Input::view(bytes, name), keep_polygons);
+  return read(Input::view(bytes, name), keep_polygons, ~uint64_t{0});
 }
 
 }  // namespace accuray::mesh

@@ -19,10 +19,10 @@ namespace accuray::mesh {
 // Other elements and properties are skipped; the report counts the properties. Counts and list lengths are
 // checked against the bytes that are there before anything is allocated for them. More data than the header declares
 // are an error too: the mesh would silently be a part of itself. Vertices keep their order unless repair() in
-// checks.h has to remove some.
+// checks.h has to remove some. Arrays of more than `most_bytes` are refused before they are allocated.
 //
 // keep_polygons: the sizes of the polygons too, and no normals; see repair().
-MeshData read_ply(const std::string& path, bool keep_polygons = false);
+MeshData read_ply(const std::string& path, bool keep_polygons = false, uint64_t most_bytes = ~uint64_t{0});
 
 // The same from memory; `name` stands for the file in messages.
 MeshData read_ply_bytes(std::string_view bytes, const std::string& name = "<memory>", bool keep_polygons = false);

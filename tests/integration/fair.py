@@ -177,7 +177,7 @@ FAIR = {
         "the sun 60 times as wide, with the same irradiance", partial(with_large_sun, light="day", diameter=32.0)
     ),
     "tea-hill": Fair(
-        "the sun 60 times as wide, with the same irradiance", partial(with_large_sun, light="day", diameter=32.0)
+        "the sun 150 times as wide, with the same irradiance", partial(with_large_sun, light="day", diameter=80.0)
     ),
     "teapot": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),
     "thin-film": Fair("the ground glows", partial(glowing, material="ground", radiance=0.2)),

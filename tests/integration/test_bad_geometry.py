@@ -21,6 +21,7 @@ pytest.importorskip("accuray._core", reason="the compiled module is not built")
 import accuray
 from accuray.cli import main
 from accuray.scene import schema
+from accuray.scene.placements import Transforms
 
 NAN, INF = float("nan"), float("inf")
 SPP = 8
@@ -273,6 +274,9 @@ def test_from_the_middle_of_a_glass_ball_all_is_n_squared_bright() -> None:
     assert luminance.mean() == pytest.approx(2.25, rel=5e-3)
 
 
+LENGTHS = (float, tuple, np.ndarray, Transforms)
+
+
 def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
     """The same scene, every length times a factor; the intensity of point lights goes with its square."""
     families = schema.current()
@@ -280,7 +284,7 @@ def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
     def lengths(family: str, table: Table) -> Table:
         types = families.material_types if family == "material" else families.family(family).types
         params = types[table["type"]].params
-        given = [p.name for p in params if p.unit == "m" and isinstance(table.get(p.name), (float, tuple, np.ndarray))]
+        given = [p.name for p in params if p.unit == "m" and isinstance(table.get(p.name), LENGTHS)]
         found = {name: _times(table[name], factor) for name in given}
         if table.get("transform") is not None:
             found["transform"] = table["transform"] * np.array([[1, 1, 1, factor]] * 3 + [[1, 1, 1, 1]])
@@ -300,6 +304,8 @@ def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
 
 
 def _times(value: Any, factor: float) -> Any:
+    if isinstance(value, Transforms):
+        return Transforms(value.rows() * np.tile(np.float32([1, 1, 1, factor]), 3), None, None)
     if isinstance(value, np.ndarray):
         return (value * np.float32(factor)).astype(np.float32)
     return tuple(factor * x for x in value) if isinstance(value, tuple) else factor * value

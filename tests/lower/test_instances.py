@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -225,3 +226,21 @@ def test_an_instance_may_be_moved_too_far_by_those_around_it() -> None:
     shapes = {"inner": instance("ball", instances=far, prototype=True)}
     with pytest.raises(SceneError, match=r"shapes\.field: transform moves or scales by more than 1e15"):
         devices.load(scene({**shapes, "field": instance("inner", transform={"scale": 1e8})}))
+
+
+def test_a_mesh_file_larger_than_the_memory_is_refused_unread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    vertices = "".join(f"{i} {i * i} 0\n" for i in range(100))
+    faces = "".join(f"3 0 {i} {i + 1}\n" for i in range(1, 99))
+    header = "ply\nformat ascii 1.0\nelement vertex 100\nproperty float x\nproperty float y\nproperty float z\n"
+    header += "element face 98\nproperty list uchar int vertex_indices\nend_header\n"
+    (tmp_path / "fan.ply").write_text(header + vertices + faces)
+    (tmp_path / "fan.obj").write_text(50 * "v 0 0 0\n" + "f 1 2 3\n")
+    message = r"fan\.ply:7: element face with 98 rows takes more memory than there is, 2376 bytes: allowed 2000 bytes"
+    for file, room, expected in (("fan.ply", 2000, message), ("fan.obj", 60, "a mesh from 408 bytes would take 68 B")):
+        monkeypatch.setattr(memory, "available_bytes", lambda room=room: room)
+        with pytest.raises(SceneError, match=expected):
+            accuray.Scene.from_dict(
+                scene_with({"fan": {"type": "mesh", "file": file, "material": "grey"}}), folder=tmp_path
+            )
+        with pytest.raises(SceneError, match=expected[:20]):
+            accuray.load(tmp_path / file)

@@ -84,7 +84,7 @@ def test_the_identity_follows_the_forms_not_their_spelling():
         ({"positions": keyed((1, TRIANGLE), (0, TRIANGLE))}, "rising times"),
         ({"positions": keyed((0, TRIANGLE), (1, TRIANGLE * np.nan))}, "not finite"),
         ({"positions": {**keyed((0, TRIANGLE)), "interpolation": "smooth"}}, "linear"),
-        ({"positions": keyed((0, TRIANGLE), (1, 2 * TRIANGLE)), "uvs": keyed((0, TRIANGLE[:, :2]))}, "uvs.*cannot change"),
+        ({"positions": keyed((0, TRIANGLE), (1, 2 * TRIANGLE)), "uvs": keyed((0, TRIANGLE[:, :2]))}, "cannot change"),
         ({"positions": keyed((0, TRIANGLE), (1, 2 * TRIANGLE)), "crease_angle": 30}, "creases"),
         ({"positions": keyed((0, TRIANGLE), (1, 2 * TRIANGLE)), "material": "lamp"}, "emits"),
     ],

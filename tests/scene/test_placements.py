@@ -14,7 +14,7 @@ from instance_arrays import Rows, scene_with, similarities
 from numpy.typing import NDArray
 
 from accuray import Scene, SceneError
-from accuray.formats.arrays import read_npy
+from accuray.formats.arrays import read_csv, read_npy
 from accuray.scene import memory
 
 ROWS = similarities(7, 1)
@@ -262,6 +262,25 @@ def test_bad_csv(case: str, tmp_path: Path) -> None:
     text, message = BAD_CSV[case]
     with pytest.raises(SceneError, match=message):
         scene(tmp_path, instances=csv(tmp_path, text))
+
+
+def test_damaged_csv_is_read_or_refused(tmp_path: Path) -> None:
+    whole = "# places\nxx,xy\n" + "\n".join(",".join(f"{x:.3f}" for x in row.ravel()) for row in ROWS[:2]) + "\n"
+    rng = np.random.default_rng(4)
+    noise = [b"\0", b",", b"\n", b"#", b"-", b"e", b"nan", b"\xff", b'"', b"1e999", b"(1+2j)", b"0x1", b"_", b";"]
+    damaged = [whole.encode()[:end] for end in range(len(whole))]
+    damaged += [
+        whole.encode()[:place] + noise[place % len(noise)] + whole.encode()[place + place % 2 :]
+        for place in rng.integers(0, len(whole), 150)
+    ]
+    for content in damaged:
+        (tmp_path / "field.csv").write_bytes(content)
+        try:
+            array = read_csv(tmp_path / "field.csv")
+        except ValueError:
+            continue
+        assert array.dtype == np.float64
+        assert array.ndim == 2
 
 
 def test_files_stay_inside_the_folder_of_the_scene(tmp_path: Path) -> None:

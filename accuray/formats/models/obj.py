@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from accuray.formats.mesh import read_compiled
 from accuray.formats.models import mtl
 from accuray.formats.models.model import Model, Options, mesh_table
 from accuray.formats.models.mtl import MtlMaterial
@@ -22,9 +23,7 @@ MOST_LIBRARIES = 100
 
 def read(path: Path, options: Options) -> Model:
     """The model in an OBJ file and its MTL files. Raises SceneError or ValueError."""
-    from accuray._core import mesh
-
-    arrays = mesh.read_obj(display_path(path))
+    arrays = read_compiled(path)
     model = Model(path.parent)
     note_report(model, path.stem, arrays.report)
     library = _libraries(path, arrays.libraries, model, options)

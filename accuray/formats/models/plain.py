@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from accuray.formats.mesh import read_compiled
 from accuray.formats.models.model import Model, Options, Table, mesh_table, placement
 from accuray.scene.arrays import scale_to_metres
-from accuray.scene.paths import display_path
 
 MATERIAL: Table = {"type": "diffuse", "reflectance": 0.6}
 COLORED: Table = {"type": "diffuse", "reflectance": {"texture": "vertex colours"}}
@@ -17,16 +17,12 @@ COLORED: Table = {"type": "diffuse", "reflectance": {"texture": "vertex colours"
 
 def read_ply(path: Path, options: Options) -> Model:
     """A PLY file; its colours, if it has any, are those of a matte surface. Raises ValueError."""
-    from accuray._core import mesh
-
-    return _model(path, mesh.read_ply(display_path(path)), options)
+    return _model(path, read_compiled(path), options)
 
 
 def read_stl(path: Path, options: Options) -> Model:
     """An STL file. Raises ValueError."""
-    from accuray._core import mesh
-
-    return _model(path, mesh.read_stl(display_path(path)), options)
+    return _model(path, read_compiled(path), options)
 
 
 def _model(path: Path, arrays: Any, options: Options) -> Model:
