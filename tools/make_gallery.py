@@ -49,6 +49,7 @@ SHOTS = {
     "colour-bleeding-indirect": Shot("colour-bleeding", layer="indirect", exposure=1.7),
     "torus-knot": Shot("torus-knot"),
     "rough-metals": Shot("rough-metals"),
+    "subdivision": Shot("subdivision"),
     "textured": Shot("textured"),
     "textured-close-up": Shot(
         "textured",
