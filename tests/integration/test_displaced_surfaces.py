@@ -71,3 +71,22 @@ def test_bumps_cast_shadows() -> None:
     lit = 2 * math.cos(math.pi / 4) * 0.5 / math.pi
     value = np.asarray(result.mean, dtype=np.float64).ravel()
     assert np.allclose(value, [lit, lit, 0, 0, 0, lit, lit], rtol=1e-4)
+
+
+def test_the_flux_of_a_lamp_leaves_its_displaced_surface() -> None:
+    # A ramp of slope 3/4 makes the lamp 5/4 as large, and so its radiance 4/5 of what it was.
+    def radiance(**keys: Any) -> float:
+        lamp = {"type": "rectangle", "corner": [-1, 0, 1], "edge_u": [2, 0, 0], "edge_v": [0, 0, -2]}
+        glow = {"type": "diffuse", "reflectance": 0, "emission": {"illuminant": "D65", "flux": "100 lm"}}
+        scene = accuray.Scene.from_dict(
+            {
+                "materials": {"glow": glow},
+                "textures": {"ramp": {"type": "gradient"}},
+                "shapes": {"lamp": {**lamp, "material": "glow", **keys}},
+            }
+        )
+        result = accuray.radiance(scene, [[0.1, 5, 0.2]], [[0, -1, 0]], 4, wavelengths=[550.0])
+        return float(np.asarray(result.mean).ravel()[0])
+
+    tilted = radiance(displacement="ramp", displacement_scale=1.5, subdivision_levels=2)
+    assert tilted == pytest.approx(0.8 * radiance(), rel=1e-4)
