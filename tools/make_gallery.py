@@ -50,6 +50,7 @@ SHOTS = {
     "torus-knot": Shot("torus-knot"),
     "motion": Shot("motion"),
     "rough-metals": Shot("rough-metals"),
+    "subdivision": Shot("subdivision"),
     "textured": Shot("textured"),
     "textured-close-up": Shot(
         "textured",

@@ -125,7 +125,7 @@ def _area(name: str, shape: Values, meshed: Meshed) -> float:
         return float(scale * 4.0 * pi * shape["radius"] ** 2)
     if shape["type"] == "disk":
         return float(scale * pi * shape["radius"] ** 2)
-    if shape["type"] == "rectangle":
+    if shape["type"] == "rectangle" and shape.get("displacement") is None:
         return float(scale * np.linalg.norm(np.cross(shape["edge_u"], shape["edge_v"])))
     positions, faces = meshed(name, shape)[:2]
     corners = np.asarray(positions, dtype=np.float64)[np.asarray(faces)]

@@ -27,7 +27,10 @@ def read(path: Path, polygons: bool = False) -> dict[str, Any]:
 
 
 def read_compiled(path: Path, polygons: bool = False) -> Any:
-    """The compiled reader's mesh; with polygons a control mesh. Raises ValueError for a wrong file, or one too large for memory."""
+    """The compiled reader's mesh; with polygons a control mesh.
+
+    Raises ValueError for a wrong file, and for one whose arrays do not fit in memory.
+    """
     from accuray._core import mesh
 
     if path.suffix.lower() == ".ply":

@@ -236,7 +236,7 @@ MeshData subdivide(const MeshData& control, const Subdivision& how) {
   share_peaks(positions, attributes);
   MeshData mesh = to_mesh(refine(std::move(faces), std::move(positions), std::move(attributes), how),
                           !control.uvs.empty(), !control.colors.empty());
-  mesh.report = report;
+  mesh.report = std::move(report);
   return mesh;
 }
 

@@ -173,6 +173,7 @@ FAIR = {
         "the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)
     ),
     "spot": Fair("cones of 70 degrees, so that every lamp lights most of the stage", partial(widened, outer=70.0)),
+    "subdivision": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "sunny": Fair(
         "the sun 60 times as wide, with the same irradiance", partial(with_large_sun, light="day", diameter=32.0)
     ),

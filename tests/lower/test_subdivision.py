@@ -271,3 +271,23 @@ def test_any_soup_of_polygons_gives_finite_surfaces() -> None:
 def test_what_does_not_fit_is_refused(keys: dict[str, Any], words: str) -> None:
     with pytest.raises(accuray.SceneError, match=words):
         mesh_of({"type": "mesh", "positions": CUBE, "faces": CUBE_FACES, **keys})
+
+
+@pytest.mark.parametrize(("name", "text"), [("cube.obj", QUADS_OBJ), ("cube.ply", QUADS_PLY)])
+def test_damaged_files_are_surfaces_or_refused(tmp_path: Path, name: str, text: str) -> None:
+    rng = np.random.default_rng(11)
+    refused = 0
+    for _ in range(60):
+        damaged = list(text)
+        for place in rng.integers(0, len(text), 3):
+            damaged[place] = "0123456789 -e.\n"[rng.integers(0, 15)]
+        (tmp_path / name).write_text("".join(damaged)[: rng.integers(len(text) // 2, 2 * len(text))])
+        shape = {"type": "mesh", "file": name, "subdivision": "catmull_clark", "subdivision_levels": 2, "material": "m"}
+        try:
+            scene = accuray.Scene.from_dict(
+                {"materials": {"m": {"type": "diffuse"}}, "shapes": {"it": shape}}, folder=tmp_path
+            )
+            assert np.isfinite(accuray.triangles(scene, "it").positions).all()
+        except accuray.SceneError:
+            refused += 1
+    assert 5 < refused < 60

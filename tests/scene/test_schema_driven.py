@@ -166,15 +166,8 @@ def test_tables_say_all_that_validation_needs() -> None:
             assert param.doc, f"{type_.name}.{param.name} has no sentence"
             assert param.kind != "spectrum" or param.role in ("reflectance", "emission", "index")
             assert param.kind != "enum" or param.choices
-            assert param.kind != "array" or param.role in (
-                "Nx2",
-                "Nx3",
-                "Nx3 or Nx4",
-                "faces",
-                "pixels",
-                "file or Nx3x4",
-                "file or N",
-            )
+            rows = ("Nx2", "Nx3", "Nx3 or Nx4", "Ex3", "Cx2", "faces", "pixels", "file or Nx3x4", "file or N")
+            assert param.kind != "array" or param.role in rows
 
 
 def test_json_schema_is_plain_and_complete() -> None:
