@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.fuzz import seeds
-from tests.fuzz.child import attempt, limit_memory
+from tests.fuzz.child import attempt, limit_memory, report_ends
 from tests.fuzz.readers import READERS
 
 ROOM = 48 << 20
@@ -197,6 +197,7 @@ def answer(name: str, folder: Path, content: bytes) -> str | None:
 
 def main() -> None:
     """The command."""
+    report_ends()
     folder = Path(sys.argv[1])
     answers: dict[str, list[str | None]] = {}
     for name, files in LIES.items():
