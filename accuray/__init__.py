@@ -15,11 +15,23 @@ from accuray.data.version import __version__
 
 if TYPE_CHECKING:
     from accuray.devices import build_info, cache_folder
-    from accuray.devices.lowering import Triangles, triangles
+    from accuray.devices.lowering import triangles
+    from accuray.devices.refining import Triangles
     from accuray.film import Image, ImageError, probe_writable
     from accuray.film.comparing import Comparison, compare
     from accuray.formats import convert, load
-    from accuray.render import Progress, Radiance, radiance, render
+    from accuray.render import (
+        FoundFrame,
+        Frame,
+        Progress,
+        Radiance,
+        find_frame,
+        frame_path,
+        parse_frames,
+        radiance,
+        render,
+        render_frames,
+    )
     from accuray.scene import Scene, SceneError, Spectrum
     from accuray.scene.jsonschema import json_schema
     from accuray.scene.reference import reference_markdown
@@ -28,6 +40,8 @@ if TYPE_CHECKING:
 # and the other small commands start at once.
 _HOMES = {
     "Comparison": "accuray.film.comparing",
+    "FoundFrame": "accuray.render",
+    "Frame": "accuray.render",
     "Image": "accuray.film",
     "ImageError": "accuray.film",
     "Progress": "accuray.render",
@@ -35,22 +49,28 @@ _HOMES = {
     "Scene": "accuray.formats",
     "SceneError": "accuray.scene",
     "Spectrum": "accuray.scene",
-    "Triangles": "accuray.devices.lowering",
+    "Triangles": "accuray.devices.refining",
     "build_info": "accuray.devices",
     "cache_folder": "accuray.devices",
     "compare": "accuray.film.comparing",
     "convert": "accuray.formats",
+    "find_frame": "accuray.render",
+    "frame_path": "accuray.render",
     "json_schema": "accuray.scene.jsonschema",
     "load": "accuray.formats",
+    "parse_frames": "accuray.render",
     "probe_writable": "accuray.film",
     "radiance": "accuray.render",
     "reference_markdown": "accuray.scene.reference",
     "render": "accuray.render",
+    "render_frames": "accuray.render",
     "triangles": "accuray.devices.lowering",
 }
 
 __all__ = [
     "Comparison",
+    "FoundFrame",
+    "Frame",
     "Image",
     "ImageError",
     "Progress",
@@ -64,12 +84,16 @@ __all__ = [
     "cache_folder",
     "compare",
     "convert",
+    "find_frame",
+    "frame_path",
     "json_schema",
     "load",
+    "parse_frames",
     "probe_writable",
     "radiance",
     "reference_markdown",
     "render",
+    "render_frames",
     "triangles",
 ]
 

@@ -83,7 +83,7 @@ def _circumstances(result: Result) -> str:
     busy = machine["load_at_start"][0] > BUSY_SHARE * machine["cores"]
     versions = {
         f"{row['renderer'].partition(':')[0]} {row['answer']['version'].split()[0]}": None
-        for name in ("cornell", "million", "efficiency", "glossy", "frosted")
+        for name in ("cornell", "million", "efficiency", *(scene for scene, _, _ in report.EQUAL_ERROR))
         for row in result.get(name, ())
         if "answer" in row
     }
@@ -115,6 +115,10 @@ TABLES: dict[str, tuple[str, dict[str, str]]] = {
     "efficiency": ("Time to equal error: Cornell box", dict(speed.EFFICIENCY_COLUMNS)),
     "glossy": ("Time to equal error: rough metal over a textured floor", dict(speed.EFFICIENCY_COLUMNS)),
     "frosted": ("Time to equal error: rough glass", dict(speed.EFFICIENCY_COLUMNS)),
+    "environment": ("Time to equal error: environment map", dict(speed.EFFICIENCY_COLUMNS)),
+    "interior": ("Time to equal error: a room behind a window", dict(speed.EFFICIENCY_COLUMNS)),
+    "lamps": ("Time to equal error: 10 000 lamps", dict(speed.EFFICIENCY_COLUMNS)),
+    "instanced": ("Time to equal error: 4000 instances", dict(speed.EFFICIENCY_COLUMNS)),
     "startup": ("Whole process at 1 sample per pixel", dict(startup.COLUMNS)),
     "threads": ("Threads", dict(threads.COLUMNS)),
     "lights": ("Many lamps", dict(lights.COLUMNS)),

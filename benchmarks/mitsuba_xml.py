@@ -4,7 +4,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, ElementTree, SubElement, indent
 
 from benchmarks import settings
-from benchmarks.scenes import Scene, Spectrum
+from benchmarks.description import Scene, Spectrum
 
 
 def write_xml(scene: Scene, folder: Path, size: int, spp: int) -> Path:
@@ -24,7 +24,7 @@ def write_xml(scene: Scene, folder: Path, size: int, spp: int) -> Path:
         SubElement(shape, "string", name="filename", value=f"{mesh.name}.ply")
         SubElement(shape, "boolean", name="face_normals", value=str(mesh.normals is None).lower())
         SubElement(shape, "ref", id=mesh.material)
-        if mesh.material == scene.emitter:
+        if mesh.material == scene.emitter and scene.emission:
             emitter = SubElement(shape, "emitter", type="area")
             SubElement(emitter, "spectrum", name="radiance", value=_pairs(scene.emission))
     indent(root)

@@ -19,6 +19,10 @@ BENCHMARKS = (
     "efficiency",
     "glossy",
     "frosted",
+    "environment",
+    "interior",
+    "lamps",
+    "instanced",
     "lights",
     "replay",
     "startup",
@@ -178,6 +182,11 @@ RUN: dict[str, Callable[[speed.Options, argparse.Namespace], Any]] = {
     "efficiency": _efficiency("cornell", settings.EFFICIENCY_CONTENDERS, settings.EFFICIENCY_SIZE),
     "glossy": _efficiency("glossy", settings.MATERIALS_CONTENDERS, settings.MATERIALS_SIZE),
     "frosted": _efficiency("frosted", settings.MATERIALS_CONTENDERS, settings.MATERIALS_SIZE),
+    **{
+        name: _efficiency(name, settings.MATERIALS_CONTENDERS, settings.WORLDS_SIZE)
+        for name in ("environment", "interior", "lamps")
+    },
+    "instanced": _efficiency("instanced", settings.INSTANCES_CONTENDERS, settings.WORLDS_SIZE),
     "replay": _replay,
     "startup": _startup,
     "memory": _memory,

@@ -51,6 +51,15 @@ RINGS = 180
 MATERIALS_SIZE = 128
 """Width and height of the images of those two scenes: references of rough glass take long."""
 
+WORLDS_SIZE = 128
+"""Width and height of the images of the scenes with a sky, a room, many lamps and many copies."""
+
+SKY_HEIGHT = 512
+"""Rows of the environment map; it is twice as wide."""
+
+COPIES = 4000
+"""Instances of two meshes of some 25 000 triangles each."""
+
 STARTUP_SIZE = 256
 STARTUP_RUNS = 15
 STARTUP_VARIANT = "llvm_ad_spectral"
@@ -115,4 +124,12 @@ MATERIALS_CONTENDERS = (
     Contender("mitsuba", "llvm_ad_rgb", "multijitter"),
     Contender("cycles"),
 )
-"""For time to equal error with rough metal and rough glass; Mitsuba with its best sampler of the Cornell box."""
+"""For time to equal error in all other scenes; Mitsuba with its best sampler of the Cornell box."""
+
+INSTANCES_CONTENDERS = (
+    Contender("accuray"),
+    Contender("mitsuba", "scalar_spectral", "multijitter"),
+    Contender("mitsuba", "scalar_rgb", "multijitter"),
+    Contender("cycles"),
+)
+"""Mitsuba's compiled variants trace a program for each instance anew: 200 of them take a minute, 4000 never end."""

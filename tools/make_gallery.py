@@ -48,6 +48,7 @@ SHOTS = {
     "colour-bleeding": Shot("colour-bleeding"),
     "colour-bleeding-indirect": Shot("colour-bleeding", layer="indirect", exposure=1.7),
     "torus-knot": Shot("torus-knot"),
+    "motion": Shot("motion"),
     "rough-metals": Shot("rough-metals"),
     "textured": Shot("textured"),
     "textured-close-up": Shot(

@@ -86,6 +86,16 @@ def sample_range(text: str) -> tuple[int, int]:
     return int(first), int(end)
 
 
+def frame_list(text: str) -> tuple[int, ...]:
+    """An argument type: frames of an animation, as `accuray.parse_frames` reads them."""
+    import accuray
+
+    try:
+        return accuray.parse_frames(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
 def fractions_of_image(text: str) -> tuple[float, float, float, float]:
     """An argument type: `x0,x1,y0,y1`, fractions of the width and height from the upper left corner."""
     x0, x1, y0, y1 = _four(text, float, "four numbers x0,x1,y0,y1")

@@ -56,9 +56,13 @@ class Progress(Protocol):
 
 
 class Display:
-    """What all displays share: at most one output per interval, and always the last state."""
+    """What all displays share: at most one output per interval, and always the last state.
+
+    `frame` is the number of the frame that is rendered, None for a picture by itself.
+    """
 
     interval = math.inf
+    frame: int | None = None
 
     def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic) -> None:
         self.stream = stream
@@ -81,6 +85,11 @@ class Display:
     def show(self, progress: Progress) -> None:
         """Prints one state."""
 
+    @property
+    def label(self) -> str:
+        """What stands before the state of a frame."""
+        return "" if self.frame is None else f"frame {self.frame}: "
+
     def _flush(self) -> None:
         if self._unshown is not None:
             self.show(self._unshown)
@@ -99,7 +108,7 @@ class LogDisplay(Display):
     def show(self, progress: Progress) -> None:
         """Prints `Progress: 35% 224/640 spp 00:12<00:22 5.20 Mrays/s, error 1.8 %`."""
         times = f"{duration(progress.elapsed)}<{duration(progress.eta)}"
-        head = f"Progress: {percent(progress)}% {progress.done}/{progress.total} spp {times}"
+        head = f"{self.label}Progress: {percent(progress)}% {progress.done}/{progress.total} spp {times}"
         print(head, figures(progress), file=self.stream, flush=True)
 
 
@@ -115,7 +124,7 @@ class LiveDisplay(Display):
         filled = round(share * BAR_WIDTH)
         bar = "[" + "#" * filled + "-" * (BAR_WIDTH - filled) + "] "
         left = "done in " + duration(progress.elapsed) if share >= 1 else duration(progress.eta) + " left"
-        text = f"{percent(progress):3d}% {progress.done}/{progress.total} spp  {figures(progress)}  {left}"
+        text = f"{self.label}{percent(progress):3d}% {progress.done}/{progress.total} spp  {figures(progress)}  {left}"
         columns = terminal_columns(self.stream)
         if len(bar) + len(text) < columns:
             text = bar + text
@@ -137,24 +146,29 @@ class JsonDisplay(Display):
     interval = JSON_INTERVAL
 
     def show(self, progress: Progress) -> None:
-        """Prints the state with the names of `Progress`."""
-        record: dict[str, int | float | None] = {"done": progress.done, "total": progress.total, "rays": progress.rays}
+        """Prints the state with the names of `Progress`, and the frame if there is one."""
+        record: dict[str, int | float | None] = {} if self.frame is None else {"frame": self.frame}
+        record |= {"done": progress.done, "total": progress.total, "rays": progress.rays}
         for name in ("elapsed", "eta", "samples_per_second", "rays_per_second", "error"):
             value: float | None = getattr(progress, name)
             record[name] = round(value, 9) if value is not None and math.isfinite(value) else None
         print(json.dumps(record), file=self.stream, flush=True)
 
 
-def choose_display(style: str, quiet: bool, stream: TextIO) -> Display | None:
+def choose_display(style: str, quiet: bool, stream: TextIO, frame: int | None = None) -> Display | None:
     """The display for a stream. `style`: "json", or "auto" for what fits the stream and the wish for quiet.
 
-    None for silence: an engine without a display need not estimate errors for it.
+    None for silence: an engine without a display need not estimate errors for it. `frame`: number of the frame.
     """
+    display: Display
     if style == "json":
-        return JsonDisplay(stream)
-    if quiet:
+        display = JsonDisplay(stream)
+    elif quiet:
         return None
-    return LiveDisplay(stream) if stream.isatty() else LogDisplay(stream)
+    else:
+        display = LiveDisplay(stream) if stream.isatty() else LogDisplay(stream)
+    display.frame = frame
+    return display
 
 
 def percent(progress: Progress) -> int:

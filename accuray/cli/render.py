@@ -14,7 +14,17 @@ from typing import TYPE_CHECKING, Any
 
 from .interrupts import Interrupts
 from .output import add_output_flag, probe, save
-from .parser import Parser, UsageError, fractions_of_image, names, override, pixel_bounds, sample_range, whole_number
+from .parser import (
+    Parser,
+    UsageError,
+    fractions_of_image,
+    frame_list,
+    names,
+    override,
+    pixel_bounds,
+    sample_range,
+    whole_number,
+)
 from .progress import choose_display
 from .threads import thread_count
 
@@ -63,6 +73,13 @@ def configure(parser: Parser) -> None:
         help="further layers of the image, of: indirect (light scattered more than once on its way to the camera)",
     )
     what.add_argument(
+        "--frames",
+        metavar="LIST",
+        type=frame_list,
+        help="frames of an animation, as in 5, 1-100, 1-100x2 (every second one) or 1-3,7; --frames=-5--1 from -5 to "
+        "-1. Each #### in OUT.exr becomes the number; frames that are finished are skipped",
+    )
+    what.add_argument(
         "-D",
         dest="overrides",
         metavar="key=value",
@@ -90,6 +107,10 @@ def run(options: Namespace) -> int:
     """Renders and writes; SIGINT and SIGTERM end the render early, and the image so far is written."""
     import accuray
 
+    if options.frames is not None:
+        from .frames import run_frames
+
+        return run_frames(options)
     exr = Path(options.output or f"{options.scene.stem}.exr")
     arguments = render_arguments(options)
     probe(exr, COMMAND)
@@ -113,6 +134,8 @@ def run(options: Namespace) -> int:
             warn(options, "interrupted before there was an image")
             return interrupts.status
     note(options, f"rendered in {rendered - loaded:.2f} s, written in {perf_counter() - rendered:.2f} s")
+    for text in tessellations(image):
+        note(options, text)
     for text in defects(image):
         warn(options, text)
     if interrupts.status:
@@ -123,13 +146,17 @@ def run(options: Namespace) -> int:
 
 
 def render(
-    scene: accuray.Scene, options: Namespace, arguments: dict[str, Any], interrupts: Interrupts
+    scene: accuray.Scene,
+    options: Namespace,
+    arguments: dict[str, Any],
+    interrupts: Interrupts,
+    frame: int | None = None,
 ) -> accuray.Image:
     """Runs the engine under a progress display; an interrupted engine returns what it has."""
     import accuray
 
     crop = crop_window(options, scene.film["width"], scene.film["height"])
-    display = choose_display(options.progress, options.quiet, sys.stderr)
+    display = choose_display(options.progress, options.quiet, sys.stderr, frame)
     try:
         with interrupts.interruptible():
             return accuray.render(scene, **arguments, crop=crop, progress=display, on_interrupt="return")
@@ -186,6 +213,13 @@ def crop_window(options: Namespace, width: int, height: int) -> tuple[int, int, 
     return x0, y0, x1, y1
 
 
+def tessellations(image: accuray.Image) -> Iterator[str]:
+    """Says how many triangles were made of shapes that are subdivided or displaced."""
+    for shape, report in image.metadata.get("mesh_reports", {}).items():
+        if "tessellated_triangles" in report:
+            yield f"shapes.{shape}: cut into {report['tessellated_triangles']} triangles"
+
+
 def defects(image: accuray.Image) -> Iterator[str]:
     """Says what was left out of the image although the rest of it is fine."""
     reports: dict[str, dict[str, Any]] = image.metadata.get("mesh_reports", {})
@@ -193,6 +227,8 @@ def defects(image: accuray.Image) -> Iterator[str]:
         losses = [f"{report[key]} {what}" for key, what in LOSSES.items() if report.get(key)]
         if losses:
             yield f"shapes.{shape}: left out {', '.join(losses)}"
+        if "motion_error" in report:
+            yield f"shapes.{shape}: moves so far that its blur is up to {report['motion_error']:.2g} of its size off"
     if image.film.dropped_total:
         yield f"{image.film.dropped_total} samples were not finite and were left out"
 

@@ -11,17 +11,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from accuray.devices.lowering import MeshReport, lower
+from accuray.devices.kept import Kept, lowered_tables, same, shapes_alone, stands_alone
+from accuray.devices.lowering import lower, with_camera
+from accuray.devices.shapes import MeshReport
 from accuray.film import Film
 from accuray.scene import Scene
 
 
 @dataclass(frozen=True)
 class LoadedScene:
-    """A scene ready for passes. ``reports`` says, by shape, what was left out of its mesh."""
+    """A scene ready for passes. ``reports`` says, by shape, what was left out of its mesh.
+
+    ``tables`` and ``block`` are what it was lowered from and to; ``parts`` counts what was built for it and what was
+    kept of an earlier frame: each "mesh", the "structure" over all shapes, and the "tables" of everything else.
+    """
 
     core: Any
     reports: dict[str, MeshReport]
+    tables: dict[str, Any]
+    block: Any
+    parts: Kept
 
     def render_pass(self, film: Film, tiles: list[int], first: int, count: int, *, seed: int, threads: int) -> Any:
         """Starts adding samples first .. first + count - 1 of some 16x16 tiles of the film's window.
@@ -71,15 +80,37 @@ _loaded: dict[int, LoadedScene] = {}
 
 
 def load(scene: Scene) -> LoadedScene:
-    """Lowers a scene and builds its acceleration structure; the same scene gives the same object. Raises SceneError."""
-    from accuray._core import engine
+    """Lowers a scene and builds its acceleration structure; the same scene gives the same object. Raises SceneError.
 
+    What another frame of the same animation has left (``scene.resident``) is used as far as it is the same.
+    """
     key = id(scene)
     if key not in _loaded:
-        block, reports = lower(scene)
-        _loaded[key] = LoadedScene(engine.LoadedScene(block), reports)
+        loaded = _load_after(scene, scene.resident.loaded)
+        scene.resident.loaded = _loaded[key] = loaded
         weakref.finalize(scene, _loaded.pop, key, None)
     return _loaded[key]
+
+
+def _load_after(scene: Scene, before: LoadedScene | None) -> LoadedScene:
+    from accuray._core import engine
+
+    tables = lowered_tables(scene)
+    parts = Kept(None if before is None else before.parts)
+    alone = all(map(stands_alone, scene.shapes.values()))
+    others = [name for name in tables if name != "camera"]
+    if before is not None and alone and all(same(tables[name], before.tables[name]) for name in others):
+        block = before.block if same(tables["camera"], before.tables["camera"]) else with_camera(scene, before.block)
+        if block is not None:
+            parts.keep_all()
+            return LoadedScene(engine.LoadedScene(block, before.core, True), before.reports, tables, block, parts)
+    block, reports = lower(scene, parts)
+    parts.release()
+    parts.count("tables", is_built=True)
+    is_same = before is not None and alone and same(shapes_alone(tables), shapes_alone(before.tables))
+    parts.count("structure", is_built=not is_same)
+    core = engine.LoadedScene(block, None if before is None else before.core, is_same)
+    return LoadedScene(core, reports, tables, block, parts)
 
 
 @cache

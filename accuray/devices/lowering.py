@@ -3,53 +3,54 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import cache, partial
 from math import fsum, inf
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from accuray import data
 from accuray.devices.emitters import spread_emissions
-from accuray.devices.lights import LightLowering, matrix
+from accuray.devices.kept import Kept
+from accuray.devices.lights import LightLowering
 from accuray.devices.materials import MaterialLowering
+from accuray.devices.motion import Eye, camera_in_place, camera_keys, check_error
+from accuray.devices.refining import Refiner, Triangles
 from accuray.devices.rgb_table import rgb_table
+from accuray.devices.shapes import MeshReport, ShapeLowering, Tools, is_meshed, solids
 from accuray.scene import Scene, SceneError, Spectrum
 from accuray.scene import schema as schemas
+from accuray.scene.motion import Motion
 from accuray.scene.spectrum import interpolate
 from accuray.scene.textures import CHANNELS, TextureUse
-from accuray.scene.transforms import sine_cosine
 
 Values = dict[str, Any]
 
 
-MeshReport = dict[str, Any]
-
-
-def lower(scene: Scene) -> tuple[Any, dict[str, MeshReport]]:
+def lower(scene: Scene, kept: Kept | None = None) -> tuple[Any, dict[str, MeshReport]]:
     """The scene's relocatable block (``accuray._core.lower.Block``), and by shape what its mesh lost on the way.
 
-    Raises SceneError for what only the builder can find out, such as a camera that looks at itself.
+    ``kept`` holds the parts of an earlier frame and takes those of this one. Raises SceneError for what only the
+    builder can find out, such as a camera that looks at itself.
     """
-    lowering = _Lowering(scene)
-    return lowering.block(), lowering.reports
+    lowering = _Lowering(scene, kept)
+    return lowering.block(), lowering.shapes.reports
 
 
-class Triangles(NamedTuple):
-    """The triangles that a shape is rendered as, before its transform: front sides run counter-clockwise.
+def with_camera(scene: Scene, block: Any) -> Any | None:
+    """The block of a scene that differs in its camera alone; None if it must be lowered anew. Raises SceneError."""
+    from accuray._core import lower as core
 
-    positions: float32 (N, 3), metres. faces: uint32 (M, 3), indices of positions. normals: float32 (N, 3), unit, or
-    None for flat shading. uvs: float32 (N, 2), or None. colors: float32 (N, 4), linear Rec.709 and alpha, or None.
-    """
-
-    positions: NDArray[np.float32]
-    faces: NDArray[np.uint32]
-    normals: NDArray[np.float32] | None
-    uvs: NDArray[np.float32] | None
-    colors: NDArray[np.float32] | None = None
+    camera = scene.camera
+    params = schemas.current().family("camera").types[camera["type"]].params
+    plain = ("float", "vec", "enum", "int", "bool", "transform")
+    if isinstance(camera["transform"], Motion) or any(
+        camera[p.name] is not None and p.kind not in plain for p in params
+    ):
+        return None
+    return _Lowering(scene)._with_camera(partial(core.with_camera, block))
 
 
 def triangles(scene: Scene, shape: str) -> Triangles:
@@ -63,51 +64,67 @@ def triangles(scene: Scene, shape: str) -> Triangles:
     if shape not in scene.shapes:
         raise ValueError(f"the scene has no shape {shape!r}: it has {', '.join(scene.shapes) or 'none'}")
     table = scene.shapes[shape]
-    if table["type"] != "mesh" and table["type"] not in lowering.solids:
-        raise ValueError(f"{shape!r} is a {table['type']}: allowed are mesh, {', '.join(lowering.solids)}")
-    result: Triangles = lowering._guard(f"shapes.{shape}", partial(lowering.triangles, shape, table))
+    if not is_meshed(table):
+        raise ValueError(f"{shape!r} is a {table['type']}: allowed are mesh, {', '.join(solids())}")
+    lowering.add_textures()
+    result: Triangles = lowering._guard(f"shapes.{shape}", partial(lowering.shapes.triangles, shape, table))
     return result
 
 
 class _Lowering:
     """Walks the resolved tables once; names become the numbers that the block uses."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, kept: Kept | None = None) -> None:
         from accuray._core import lower as core
 
         self.scene = scene
+        self.kept = Kept() if kept is None else kept
         self.cmf, self.d65 = colour_arrays()
         self.builder = core.SceneBuilder(self.cmf, self.d65)
-        self.solids: tuple[str, ...] = core.SOLIDS
         self._has_rgb_table = False
-        kinds = schemas.current().family("texture").types
-        self._reads_colors = any(kinds[texture["type"]].reads_colors for texture in scene.textures.values())
         self._spectra: dict[Spectrum, Any] = {}
         self._pictures: dict[tuple[str, tuple[int, ...], bytes], int] = {}
         self.textures: dict[str, int] = {}
         self.materials: dict[str, int] = {}
-        self.reports: dict[str, MeshReport] = dict(scene.mesh_reports)
+        refiner = Refiner(
+            lambda texture, uvs, points: self.builder.texture_values(self.textures[texture], uvs, points),
+            cache(lambda: self._with_camera(core.camera_view)),
+        )
+        self.shapes = ShapeLowering(scene, Tools(self.builder, self.kept, self._values, self._guard, refiner))
 
     def block(self) -> Any:
         """Adds everything in a fixed order and finishes the block."""
         builder, film = self.builder, self.scene.film
-        for name, texture in self.scene.textures.items():
-            self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
-        spread = partial(spread_emissions, self.scene.materials, self.scene.shapes, self.triangles)
+        self.add_textures()
+        self.shapes.admit()
+        spread = partial(
+            spread_emissions,
+            *(self.scene.materials, self.scene.shapes, self.shapes.instancing, self.shapes.triangles),
+        )
         materials = self._guard("materials", spread)
         self.materials = MaterialLowering(materials, builder, self._values_of, self._guard).numbers()
-        self._add_shapes()
+        self.shapes.add(self.materials)
         values_of = partial(self._values, "light")
         lights = LightLowering(builder, values_of, self._spectrum, self._picture, self._need_rgb_table)
         for name, light in self.scene.lights.items():
             self._guard(f"lights.{name}", partial(lights.add, light))
-        camera, pixel_filter, integrator = self.scene.camera, self.scene.filter, self.scene.integrator
-        values = self._values("camera", camera)
-        self._guard("camera", partial(builder.set_camera, camera["type"], values, film["width"], film["height"]))
+        pixel_filter, integrator = self.scene.filter, self.scene.integrator
+        self._set_camera()
         builder.set_filter(pixel_filter["type"], self._values("filter", pixel_filter))
         builder.set_integrator(integrator["type"], self._values("integrator", integrator))
         builder.set_film(film["unit"], film["hide_environment"])
+        builder.set_compact(self.scene.render["compact"])
         return builder.finish()
+
+    def add_textures(self) -> None:
+        """Gives the builder the scene's textures, which materials and displacement refer to."""
+        for name, texture in self.scene.textures.items():
+            self._guard(f"textures.{name}", partial(self._add_texture, name, texture))
+
+    def _with_camera(self, action: Callable[..., Any]) -> Any:
+        camera, film = self.scene.camera, self.scene.film
+        values = self._values("camera", camera_in_place(camera))
+        return self._guard("camera", partial(action, camera["type"], values, film["width"], film["height"]))
 
     def _guard(self, key: str, action: Callable[[], Any]) -> Any:
         try:
@@ -149,9 +166,15 @@ class _Lowering:
 
     def _picture(self, pixels: NDArray[Any]) -> int:
         """The builder's number of a picture; those of equal content share one."""
-        key = (pixels.dtype.str, pixels.shape, hashlib.sha256(pixels.data).digest())
+        from accuray._core import lower as core
+
+        def shared() -> tuple[bytes, Any]:
+            return hashlib.sha256(pixels.data).digest(), core.Picture(pixels)
+
+        digest, picture = self.kept.part("picture", (pixels,), None, shared)
+        key = (pixels.dtype.str, pixels.shape, digest)
         if key not in self._pictures:
-            self._pictures[key] = self.builder.add_picture(pixels)
+            self._pictures[key] = self.builder.add_picture(picture)
         return self._pictures[key]
 
     def _textured(self, param: schemas.Param, use: TextureUse) -> Any:
@@ -169,69 +192,15 @@ class _Lowering:
             return self.builder.textured_emission(texture, use.scale)
         return self.builder.textured_reflectance(texture, use.scale)
 
-    def _add_shapes(self) -> None:
-        """First what the scene shows itself, then the prototypes, group by group, with their instances."""
-        instances = {name: table for name, table in self.scene.shapes.items() if table["type"] == "instance"}
-        others = {name: table for name, table in self.scene.shapes.items() if name not in instances}
-        for name, table in others.items():
-            if not table["prototype"]:
-                self._guard(f"shapes.{name}", partial(self._add_shape, name, table))
-        groups: dict[tuple[str, ...], int] = {}
-        for name, table in instances.items():
-            members = tuple(table["of"])
-            if members not in groups:
-                numbers = [self._guard(f"shapes.{m}", partial(self._add_shape, m, others[m])) for m in members]
-                groups[members] = numbers[0]
-            material = None if table["material"] is None else self.materials[table["material"]]
-            add = partial(
-                self.builder.add_instance, groups[members], len(members), matrix(table["transform"]), material
-            )
-            self._guard(f"shapes.{name}", add)
-
-    def _add_shape(self, name: str, table: Values) -> int:
-        material, transform = self.materials[table["material"]], matrix(table["transform"])
-        number: int
-        if table["type"] == "mesh" or table["type"] in self.solids:
-            mesh = self.triangles(name, table)
-            if not self._reads_colors:
-                mesh = mesh._replace(colors=None)
-            number = self.builder.add_mesh(*mesh, transform, material, table["prototype"])
-        else:
-            values = self._values("shape", table)
-            number = self.builder.add_shape(table["type"], values, transform, material, table["prototype"])
-        return number
-
-    def triangles(self, name: str, table: Values) -> Triangles:
-        """The triangles of a mesh or of one of `solids`."""
-        if table["type"] == "mesh":
-            return self._mesh(name, table)
-        from accuray._core import lower as core
-
-        newell = np.array(data.teapot()) if table["type"] == "teapot" else None
-        return Triangles(*core.tessellate(table["type"], self._values("shape", table), newell))
-
-    def _mesh(self, name: str, table: Values) -> Triangles:
-        """Arrays of a mesh; those that came from no file are repaired first, as readers do."""
-        from accuray._core import mesh as core
-
-        positions, faces, normals, uvs, colors = (
-            table[key] for key in ("positions", "faces", "normals", "uvs", "colors")
-        )
-        if table["file"] is None:
-            mesh = core.repair(positions, faces, normals, uvs, colors)
-            positions, faces, normals, uvs = mesh.positions, mesh.indices, mesh.normals, mesh.uvs
-            colors = mesh.colors
-            if mesh.report["nonfinite_triangles"] or mesh.report["degenerate_triangles"]:
-                self.reports[name] = mesh.report
-        if table["shading"] == "flat":
-            normals = None
-        elif table["crease_angle"] is not None and normals is None:
-            cosine = least_cosine(table["crease_angle"])
-            source, faces, normals = core.creased_normals(positions, faces, cosine)
-            positions, uvs, colors = (None if a is None else a[source] for a in (positions, uvs, colors))
-        elif table["shading"] == "smooth" and normals is None:
-            normals = core.smooth_normals(positions, faces)
-        return Triangles(positions, faces, normals, uvs, colors)
+    def _set_camera(self) -> None:
+        self._with_camera(self.builder.set_camera)
+        camera = self.scene.camera
+        if isinstance(camera["transform"], Motion):
+            keys = camera_keys(camera["transform"], camera["position"], Eye(camera, self.scene.film))
+            self._guard("camera", partial(check_error, keys))
+            self.builder.set_camera_motion(keys.rows)
+        if (self.shapes.moves or isinstance(camera["transform"], Motion)) and self.scene.clock.shutter:
+            self.builder.set_shutter(*np.array(self.scene.clock.shutter, dtype=np.float64).T.copy())
 
     def _spectrum(self, spectrum: Spectrum) -> Any:
         """The builder's reference to a spectrum; equal spectra share one."""
@@ -273,9 +242,3 @@ def colour_arrays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     white = [interpolate(*data.illuminants()["D65"], 360.0 + i, "zero") for i in range(471)]
     scale = fsum(observer.y) / fsum(w * y for w, y in zip(white, observer.y, strict=True))
     return cmf, np.array([w * scale for w in white])
-
-
-def least_cosine(crease_angle: float) -> float:
-    """Cosine of the largest angle, in radians, that is no crease; below all cosines for half a turn."""
-    degrees = math.degrees(crease_angle)
-    return -2.0 if degrees >= 180.0 else sine_cosine(degrees)[1]

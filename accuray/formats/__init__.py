@@ -20,6 +20,7 @@ from accuray.scene.images import register_image_reader
 from accuray.scene.meshes import MeshReader, register_reader
 from accuray.scene.models import register_expander
 from accuray.scene.photometry import register_photometry_reader
+from accuray.scene.placements import register_array_reader
 
 if TYPE_CHECKING:
     from accuray.formats.models.model import ModelReader
@@ -58,6 +59,8 @@ MODEL_READERS: dict[str, ModelReader] = {
 for _suffix, _reader in MESH_READERS.items():
     register_reader(_suffix, _reader)
 register_image_reader(image.read)
+register_array_reader(".npy", _late("arrays", "read_npy"))
+register_array_reader(".csv", _late("arrays", "read_csv"))
 register_photometry_reader(".ies", _late("ies", "read"))
 register_expander(partial(_late("models.expanding", "expand"), readers=MODEL_READERS))
 
@@ -78,11 +81,14 @@ def load(
     path: str | PathLike[str],
     overrides: Iterable[str] | Mapping[str, Any] = (),
     roots: Iterable[str | PathLike[str]] = (),
+    *,
+    frame: float | None = None,
 ) -> Scene:
     """Read, merge and validate a scene file, or a model file as a scene: by its own camera, else by one that shows it.
 
     ``overrides`` change values before validation: texts such as ``"film.width=256"`` (the value in TOML syntax,
     else taken as text) or a mapping from dotted keys to values. ``roots`` are folders, besides the scene's own
-    and those in ACCURAY_PATH, that the files named in the scene may lie in. Raises SceneError.
+    and those in ACCURAY_PATH, that the files named in the scene may lie in. ``frame`` is the frame of an animation,
+    by default that of the scene's section ``[animation]``; ``Scene.at`` gives further ones. Raises SceneError.
     """
-    return load_scene(path, SCENE_READERS, MODEL_READERS, overrides, roots)
+    return load_scene(path, SCENE_READERS, MODEL_READERS, overrides, roots, frame)

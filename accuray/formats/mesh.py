@@ -8,22 +8,22 @@ from typing import Any
 from accuray.scene.paths import display_path
 
 
-def read_obj(path: Path) -> dict[str, Any]:
+def read_obj(path: Path, polygons: bool = False) -> dict[str, Any]:
     """Wavefront OBJ: arrays as ``accuray.scene.meshes.MeshReader`` says."""
     from accuray._core import mesh
 
-    return _arrays(mesh.read_obj(display_path(path)))
+    return _arrays(mesh.read_obj(display_path(path), polygons))
 
 
-def read_ply(path: Path) -> dict[str, Any]:
+def read_ply(path: Path, polygons: bool = False) -> dict[str, Any]:
     """Stanford PLY, ASCII or binary: arrays as ``accuray.scene.meshes.MeshReader`` says."""
     from accuray._core import mesh
 
-    return _arrays(mesh.read_ply(display_path(path)))
+    return _arrays(mesh.read_ply(display_path(path), polygons))
 
 
-def read_stl(path: Path) -> dict[str, Any]:
-    """STL, ASCII or binary: arrays as ``accuray.scene.meshes.MeshReader`` says."""
+def read_stl(path: Path, polygons: bool = False) -> dict[str, Any]:
+    """STL, ASCII or binary, which has only triangles: arrays as ``accuray.scene.meshes.MeshReader`` says."""
     from accuray._core import mesh
 
     return _arrays(mesh.read_stl(display_path(path)))
@@ -37,5 +37,6 @@ def _arrays(mesh: Any) -> dict[str, Any]:
         "normals": mesh.normals,
         "uvs": mesh.uvs,
         "colors": mesh.colors,
+        "polygons": mesh.polygons,
         "report": mesh.report,
     }

@@ -32,6 +32,7 @@ def load_scene(
     models: Mapping[str, ModelReader],
     overrides: Iterable[str] | Mapping[str, Any],
     roots: Iterable[str | PathLike[str]],
+    frame: float | None = None,
 ) -> Scene:
     """See ``accuray.formats.load``."""
     shown = os.fspath(path)
@@ -55,7 +56,7 @@ def load_scene(
         changes = [(f"-D {text}", *parse_override(text)) for text in overrides]
     for name, key, value in changes:
         apply_override(document, name, key, value)
-    return build(document, roots=folders, path=real, notes=notes)
+    return build(document, roots=folders, path=real, notes=notes, frame=frame)
 
 
 def _existing(shown: str, suffixes: Sequence[str]) -> Path:

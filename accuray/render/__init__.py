@@ -7,10 +7,23 @@ from types import ModuleType
 from typing import Any
 
 from accuray.film import Image
+from accuray.render.frames import frame_path, parse_frames
 from accuray.render.probe import Radiance, radiance
+from accuray.render.sequence import FoundFrame, Frame, find_frame, render_frames
 from accuray.render.session import Progress, render
 
-__all__ = ["Progress", "Radiance", "radiance", "render"]
+__all__ = [
+    "FoundFrame",
+    "Frame",
+    "Progress",
+    "Radiance",
+    "find_frame",
+    "frame_path",
+    "parse_frames",
+    "radiance",
+    "render",
+    "render_frames",
+]
 
 
 class _CallableModule(ModuleType):

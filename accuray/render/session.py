@@ -74,10 +74,8 @@ def render(
     """
     if on_interrupt not in ("raise", "return"):
         raise ValueError(f"on_interrupt is {on_interrupt!r}: allowed are 'raise' and 'return'")
-    first, end = samples or (0, scene.render["spp"] if spp is None else spp)
-    if not 0 <= first < end < 2**32:
-        raise ValueError(f"samples {first}:{end} are not a range within 0 to {2**32 - 1}")
-    seed = _seed(scene, seed)
+    first, end = sample_range(scene, spp, samples)
+    seed = seed_of(scene, seed)
     channels = channels_with(scene.render["layers"] if layers is None else layers)
     session = _Session(scene, (first, end), seed, crop, channels, thread_count(threads), progress)
     interrupted = False
@@ -102,7 +100,16 @@ def thread_count(threads: int | None) -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _seed(scene: Scene, seed: int | None) -> int:
+def sample_range(scene: Scene, spp: int | None, samples: tuple[int, int] | None) -> tuple[int, int]:
+    """The sample numbers (first, end) of every pixel: those asked for, else 0 to the scene's ``spp``."""
+    first, end = samples or (0, scene.render["spp"] if spp is None else spp)
+    if not 0 <= first < end < 2**32:
+        raise ValueError(f"samples {first}:{end} are not a range within 0 to {2**32 - 1}")
+    return first, end
+
+
+def seed_of(scene: Scene, seed: int | None) -> int:
+    """The seed asked for, else the scene's."""
     chosen: int = scene.render["seed"] if seed is None else seed
     if not 0 <= chosen < 2**32:
         raise ValueError(f"seed is {chosen}: allowed are 0 to {2**32 - 1}")

@@ -48,9 +48,9 @@ def check_together(type_: Type, values: dict[str, Any], where: Where) -> None:
     counts: dict[str, tuple[str, int]] = {}
     params = [param for param in type_.params if param.kind == "array" and values.get(param.name) is not None]
     for param in params:
-        if param.role in (FACES, "pixels"):
+        if param.role in (FACES, "pixels") or param.choices:
             continue
-        letter, rows = param.role[0], len(values[param.name])
+        letter, rows = param.role[0], values[param.name].shape[-2]
         first, expected = counts.setdefault(letter, (param.name, rows))
         if rows != expected:
             raise where.child(param.name).error(f"has {rows} rows", allowed=f"{expected}, as many as {first}")
@@ -81,8 +81,8 @@ def _rows(param: Param, value: Any, where: Where) -> FloatArray:
             raise where.error(f"is an array of {value.dtype}", allowed="an array of floating-point numbers")
         array, width = value.astype(np.float64), value.shape[-1] if value.ndim == 2 else 0
     else:
-        width = len(value[0]) if value and hasattr(value, "__getitem__") and hasattr(value[0], "__len__") else widths[0]
-        width = width if width in widths else widths[0]
+        rows = value if isinstance(value, (list, tuple)) else ()
+        width = len(rows[0]) if rows and hasattr(rows[0], "__len__") and len(rows[0]) in widths else widths[0]
         _check_rows(value, width, where, shape)
         try:
             array = np.array(value, dtype=np.float64).reshape(-1, width)
@@ -149,6 +149,15 @@ def _triangles(value: Any, where: Where) -> IndexArray:
         first = polygon[0]
         triangles.extend((first, b, c) for b, c in pairwise(polygon[1:]))
     return _frozen(np.array(triangles, dtype=np.uint32).reshape(-1, 3))
+
+
+def polygon_sizes(value: Any) -> IndexArray:
+    """How many corners each polygon has, uint32 (P,), of faces that ``parse_array`` has taken."""
+    import numpy as np
+
+    if isinstance(value, np.ndarray) and value.ndim == 2:
+        return _frozen(np.full(len(value), value.shape[1], dtype=np.uint32))
+    return _frozen(np.array([len(polygon) for polygon in value], dtype=np.uint32))
 
 
 def _check_polygon(polygon: Any, where: Where) -> None:

@@ -11,10 +11,15 @@ from __future__ import annotations
 
 import hashlib
 import json
+import weakref
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from accuray.scene.deformation import deforms
+from accuray.scene.meshes import POLYGONS
+from accuray.scene.motion import Motion
+from accuray.scene.placements import Transforms
 from accuray.scene.schema import Schema, Type
 from accuray.scene.spectrum import Spectrum
 from accuray.scene.textures import TextureUse
@@ -43,7 +48,7 @@ def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
     """The canonical description: nested dicts of texts, integers and truth values."""
     textures = schema.family("texture").types
     shapes, lights = schema.family("shape").types, schema.family("light").types
-    return {
+    described: dict[str, Any] = {
         "sampling_version": schema.sampling_version,
         "film": _table("film", scene.film, schema.family("film").header),
         "render": _table("render", scene.render, schema.family("render").header),
@@ -55,6 +60,12 @@ def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
         "lights": {name: _object(item, lights) for name, item in scene.lights.items()},
         "shapes": {name: _object(item, shapes) for name, item in scene.shapes.items()},
     }
+    if scene.camera["transform"] is None:
+        del described["camera"]["transform"]  # what did not exist before version 6 of the lowered scene
+    moving = [scene.camera, *scene.shapes.values()]
+    if scene.clock.shutter and any(isinstance(table["transform"], Motion) or deforms(table) for table in moving):
+        described["shutter"] = _value(scene.clock.shutter)
+    return described
 
 
 def _table(section: str, values: dict[str, Any], type_: Type) -> dict[str, Any]:
@@ -73,6 +84,8 @@ def _params(values: dict[str, Any], type_: Type) -> dict[str, Any]:
         others = [p for group in type_.sets().get(param.set_name, {}).values() for p in group if p.group != param.group]
         stands_for_others = param.kind in ("file", "text") and any(values[other.name] is not None for other in others)
         described[param.name] = None if stands_for_others else _value(values[param.name])
+    if values.get(POLYGONS) is not None:
+        described[POLYGONS] = _value(values[POLYGONS])
     return described
 
 
@@ -83,15 +96,34 @@ def _value(value: Any) -> Any:
         return value.hex()
     if isinstance(value, (tuple, list)):
         return [_value(item) for item in value]
+    if isinstance(value, Motion):
+        return {"motion": _value(value.numbers())}
     if isinstance(value, Spectrum):
         fields = {key: _value(getattr(value, key)) for key in _FIELDS_OF_FORM[value.form]}
         flux = {"flux": True} if value.flux else {}
         return {"form": value.form, "scale": value.scale.hex(), **fields, **flux}
     if isinstance(value, TextureUse):
         return {"texture": value.texture, "scale": value.scale.hex(), "channel": value.channel}
+    if isinstance(value, Transforms):
+        return {"transforms": value.count, "sha256": value.sha256}
     if isinstance(value, Path):
         return {"sha256": _file_hash(value)}
-    return {"dtype": value.dtype.str, "shape": list(value.shape), "sha256": hashlib.sha256(value).hexdigest()}
+    return {"dtype": value.dtype.str, "shape": list(value.shape), "sha256": _array_hash(value)}
+
+
+_array_hashes: dict[int, str] = {}
+"""Of arrays that cannot change, while they live: frames of an animation share them."""
+
+
+def _array_hash(array: Any) -> str:
+    key = id(array)
+    if key not in _array_hashes:
+        digest = hashlib.sha256(array).hexdigest()
+        if array.flags.writeable:
+            return digest
+        _array_hashes[key] = digest
+        weakref.finalize(array, _array_hashes.pop, key, None)
+    return _array_hashes[key]
 
 
 def _file_hash(path: Path) -> str:

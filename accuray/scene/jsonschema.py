@@ -8,6 +8,7 @@ from typing import Any
 from accuray import data
 from accuray.scene import schema as schemas
 from accuray.scene.amounts import NAMES
+from accuray.scene.keys import INTERPOLATION, MAX_KEYS, takes_keys
 from accuray.scene.kinds import vector_length, vocabulary
 from accuray.scene.models import MODEL
 from accuray.scene.scene import FORMAT_VERSION
@@ -41,7 +42,7 @@ def json_schema() -> Node:
         "camera": _one_of(schema.family("camera").types),
         "integrator": _one_of(schema.family("integrator").types),
         "models": _named(_table(MODEL)),
-        "spectra": _named({"$ref": "#/$defs/spectrum"}),
+        "spectra": _named({"anyOf": [{"$ref": "#/$defs/spectrum"}, {"$ref": "#/$defs/keyed"}]}),
         "textures": _named(_one_of(schema.family("texture").types)),
         "materials": _named(_one_of(schema.material_types)),
         "lights": _named(_one_of(schema.family("light").types)),
@@ -54,7 +55,7 @@ def json_schema() -> Node:
         "properties": sections,
         "required": ["accuray"],
         "additionalProperties": False,
-        "$defs": {"spectrum": _spectrum(), "transform": _transform(), "textured": _textured()},
+        "$defs": {"spectrum": _spectrum(), "transform": _transform(), "textured": _textured(), "keyed": _keyed()},
     }
 
 
@@ -106,8 +107,11 @@ def _one_alternative(set_name: str, alternatives: dict[str, list[Param]]) -> Nod
 
 def _param(param: Param) -> Node:
     node = dict(_KINDS[param.kind](param))
-    if param.texturable:
-        node = {"anyOf": [node, {"$ref": "#/$defs/textured"}]}
+    forms = [{"$ref": "#/$defs/textured"}] if param.texturable else []
+    if takes_keys(param):
+        forms.append({"$ref": "#/$defs/keyed"})
+    if forms:
+        node = {"anyOf": [node, *forms]}
     description = param.doc
     if param.unit and param.unit != "1":
         description += f" In {param.unit}." if param.unit != "m" else " A length."
@@ -146,6 +150,8 @@ def _vec(param: Param) -> Node:
 
 
 def _array(param: Param) -> Node:
+    if param.choices:
+        return {"type": "string"}
     if param.role == "faces":
         indices = {"type": "array", "items": {"type": "integer", "minimum": 0}, "minItems": 3}
         return {"type": "array", "items": indices}
@@ -226,11 +232,34 @@ def _textured() -> Node:
     }
 
 
+def _keyed() -> Node:
+    key = {
+        "type": "object",
+        "properties": {
+            "time": {**_QUANTITY, "description": "In s, since frame 0."},
+            "value": {"description": "As without keys."},
+        },
+        "required": ["time", "value"],
+        "additionalProperties": False,
+    }
+    return {
+        "type": "object",
+        "description": "A value that changes with time.",
+        "properties": {
+            "keys": {"type": "array", "items": key, "minItems": 1, "maxItems": MAX_KEYS},
+            "interpolation": {"enum": list(INTERPOLATION.choices), "default": INTERPOLATION.default},
+        },
+        "required": ["keys"],
+        "additionalProperties": False,
+    }
+
+
 def _transform() -> Node:
     rotation = {
         "type": "object",
-        "properties": {"axis": _VECTOR, "angle": _QUANTITY},
-        "required": ["axis", "angle"],
+        "properties": {"axis": _VECTOR, "angle": _QUANTITY, "turns": _NUMBER},
+        "required": ["axis"],
+        "oneOf": [{"required": ["angle"]}, {"required": ["turns"]}],
         "additionalProperties": False,
     }
     look_at = {
@@ -240,15 +269,25 @@ def _transform() -> Node:
         "additionalProperties": False,
     }
     scale = {"anyOf": [_NUMBER, {**_NUMBERS, "minItems": 3, "maxItems": 3}]}
-    step = {
+    parts: Node = {
+        "translate": _VECTOR,
+        "rotate": rotation,
+        "scale": scale,
+        "matrix": {"type": "array"},
+        "look_at": look_at,
+    }
+    step = {"type": "object", "properties": parts, "additionalProperties": False}
+    steps = {"type": "array", "items": step, "minItems": 1}
+    key = {
         "type": "object",
-        "properties": {
-            "translate": _VECTOR,
-            "rotate": rotation,
-            "scale": scale,
-            "matrix": {"type": "array"},
-            "look_at": look_at,
-        },
+        "properties": {"time": _QUANTITY, **parts, "steps": steps},
+        "required": ["time"],
         "additionalProperties": False,
     }
-    return {"anyOf": [step, {"type": "array", "items": step, "minItems": 1}]}
+    keyed = {
+        "type": "object",
+        "properties": {"keys": {"type": "array", "items": key, "minItems": 1}},
+        "required": ["keys"],
+        "additionalProperties": False,
+    }
+    return {"anyOf": [step, steps, keyed]}

@@ -1,18 +1,25 @@
 """One resolver per parameter kind: from what the scene says to the canonical value.
 
 Canonical values: bool, int, float (metres, radians, ...), tuple of floats (vec), str (enum, text, reference),
-list of str (references to shapes), tuple of str (words), float64 4x4 array (transform), float32 and uint32 arrays,
-Spectrum, Path; pictures (height, width, channels); TextureUse for what a texture gives.
+list of str (references to shapes), tuple of str (words), float64 4x4 array (transform; Motion if it changes while the
+shutter is open), float32 and uint32 arrays, Transforms (of instances), Spectrum, Path; pictures (height, width,
+channels); TextureUse for what a texture gives.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 from accuray.scene.arrays import parse_array
+from accuray.scene.deformation import keyed_files, resolve_moving
 from accuray.scene.errors import Where
 from accuray.scene.images import parse_pixels
+from accuray.scene.keys import is_keyed, resolve_keyed
+from accuray.scene.motion import KEYS, parse_motion
+from accuray.scene.placements import IDS, TRANSFORMS, parse_filed
 from accuray.scene.plain import choice, in_range, quantity, range_text, text_value
 from accuray.scene.schema import Param
 from accuray.scene.scope import SECTION_OF, Scope
@@ -23,6 +30,9 @@ from accuray.scene.transforms import parse_transform
 VOCABULARIES: dict[str, Callable[[], list[str]]] = {"metal": metal_names}
 """Text parameters whose role (or name) stands here take a name out of the data that come with the renderer."""
 
+KEYED_ELSEWHERE = ("spectrum", "transform")
+"""Kinds whose own parsers know keys: spectra have names, which keys may stand behind."""
+
 ABSOLUTE = "absolute"
 """Role of a length whose bare numbers are metres whatever the file's length_unit says (a lens in a model in km)."""
 
@@ -31,6 +41,12 @@ def resolve_value(param: Param, value: Any, where: Where, scope: Scope) -> Any:
     """The canonical value of a parameter that the scene gives. Raises SceneError."""
     if names_texture(value):
         return parse_use(param, value, where, scope)
+    if is_keyed(value) and param.kind not in KEYED_ELSEWHERE:
+        return resolve_keyed(param, value, where, scope, partial(_plain, param, scope))
+    return _RESOLVERS[param.kind](param, value, where, scope)
+
+
+def _plain(param: Param, scope: Scope, value: Any, where: Where) -> Any:
     return _RESOLVERS[param.kind](param, value, where, scope)
 
 
@@ -95,14 +111,33 @@ def _text(param: Param, value: Any, where: Where, _scope: Scope) -> str:
 
 
 def _file(param: Param, value: Any, where: Where, scope: Scope) -> Any:
-    return scope.files.resolve(value, where, param.choices)
+    def resolve(name: Any, place: Where) -> Path:
+        return scope.files.resolve(name, place, param.choices)
+
+    if is_keyed(value) and param.animatable:
+        return keyed_files(value, where, resolve)
+    return resolve(value, where)
 
 
-def _transform(_param: Param, value: Any, where: Where, _scope: Scope) -> Any:
-    return parse_transform(value, where)
+def _transform(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    if not (isinstance(value, dict) and KEYS in value):
+        return parse_transform(value, where)
+    if not param.animatable:
+        raise where.child(KEYS).error("move what stands still", allowed="a transform without keys")
+    return parse_motion(value, where, scope.clock)
 
 
-def _array(param: Param, value: Any, where: Where, _scope: Scope) -> Any:
+def _array(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    if is_keyed(value) and param.animatable:
+        return resolve_moving(value, where, scope, partial(parse_array, param))
+    if where.path not in scope.arrays:
+        scope.arrays[where.path] = _plain_array(param, value, where, scope)
+    return scope.arrays[where.path]
+
+
+def _plain_array(param: Param, value: Any, where: Where, scope: Scope) -> Any:
+    if param.role in (TRANSFORMS, IDS):
+        return parse_filed(param, value, where, scope)
     return parse_pixels(value, where) if param.role == "pixels" else parse_array(param, value, where)
 
 
@@ -124,11 +159,11 @@ def _referred(param: Param, name: Any, where: Where, scope: Scope) -> str:
     if not isinstance(name, str):
         raise where.error("is not a name", value=name, allowed=f"the name of a {param.role}")
     section = SECTION_OF[param.role]
-    known = scope.names(section)
-    if name in known:
+    if scope.defines(section, name):
         return name
+    known = scope.names(section)
     for family, other in SECTION_OF.items():
-        if family != param.role and name in scope.names(other):
+        if family != param.role and scope.defines(other, name):
             raise where.error(f"is a {family}, not a {param.role}", value=name, allowed=", ".join(known) or "none")
     raise where.unknown(name, param.role, known)
 

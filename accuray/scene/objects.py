@@ -10,7 +10,7 @@ from accuray.scene.arrays import check_together
 from accuray.scene.errors import Document, Source, Where
 from accuray.scene.images import read_pixels
 from accuray.scene.kinds import resolve_value, vocabulary
-from accuray.scene.meshes import fill_from_file
+from accuray.scene.meshes import fill_from_file, keep_polygons
 from accuray.scene.paths import Confinement
 from accuray.scene.schema import Param, Schema, Type
 from accuray.scene.scope import Scope
@@ -53,6 +53,7 @@ def resolve_params(
             values[param.name] = _default(param, scope)
         if applies and values[param.name] is None and (param.group or param.required):
             raise where.error(f"lacks `{param.name}`", allowed=f"{param.kind}: {param.doc}")
+    keep_polygons(values, given)
     _expand_shorthands(type_, values, where, scope)
     check_together(type_, values, where)
     return values
@@ -123,4 +124,6 @@ def _expand_shorthands(type_: Type, values: dict[str, Any], where: Where, scope:
         elif param.role == "image":
             values["pixels"] = read_pixels(value, where.child(param.name), scope)
         elif param.kind == "file":
-            scope.mesh_reports[str(where.path[-1])] = fill_from_file(type_, values, value, where.child(param.name))
+            scope.mesh_reports[str(where.path[-1])] = fill_from_file(
+                type_, values, value, where.child(param.name), scope
+            )

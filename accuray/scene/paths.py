@@ -35,17 +35,17 @@ class Confinement:
         from_environment = [entry for entry in os.environ.get("ACCURAY_PATH", "").split(os.pathsep) if entry]
         return cls(tuple(Path(os.path.realpath(entry)) for entry in (folder, *roots, *from_environment)))
 
-    def resolve(self, name: object, where: Where, suffixes: Sequence[str] = ()) -> Path:
+    def resolve(self, name: object, where: Where, suffixes: Sequence[str] = (), *, bulk: bool = False) -> Path:
         """The real path of an existing regular file, or SceneError at ``where``.
 
         Relative names start at the folder of the file that wrote them, then at each root. ``suffixes`` are the
-        allowed endings, any if empty.
+        allowed endings, any if empty. ``bulk``: as large a file as a mesh may be, whatever its ending.
         """
         text = _checked_name(name, where)
         found = self._builtin(text, where) if text.startswith(BUILTIN) else self._search(text, where)
         if suffixes and found.suffix.lower() not in suffixes:
             raise where.error("has a file type that is not read here", value=text, allowed=", ".join(suffixes))
-        check_regular(found, where, text)
+        check_regular(found, where, text, bulk=bulk)
         return found
 
     def _builtin(self, text: str, where: Where) -> Path:
@@ -109,7 +109,7 @@ def display_path(path: Path) -> str:
     return relative if len(relative) < len(str(path)) else str(path)
 
 
-def check_regular(path: Path, where: Where, text: str) -> None:
+def check_regular(path: Path, where: Where, text: str, *, bulk: bool = False) -> None:
     """SceneError unless ``path`` is a readable regular file of at most the size for its type."""
     try:
         status = path.stat()
@@ -118,6 +118,6 @@ def check_regular(path: Path, where: Where, text: str) -> None:
     if not stat.S_ISREG(status.st_mode):
         kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a pipe, socket or device"
         raise where.error(f"is {kind}", value=text, allowed="a regular file")
-    limit = MAX_BYTES.get(path.suffix.lower(), MAX_BYTES_OTHER)
+    limit = MAX_BYTES_OTHER if bulk else MAX_BYTES.get(path.suffix.lower(), MAX_BYTES_OTHER)
     if status.st_size > limit:
         raise where.error(f"is too large ({status.st_size} bytes)", value=text, allowed=f"up to {limit} bytes")

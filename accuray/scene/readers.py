@@ -15,19 +15,19 @@ class Readers(Generic[Content]):
     """What reads one kind of file; a reader raises ValueError with the line for a wrong one."""
 
     def __init__(self) -> None:
-        self._readers: dict[str, Callable[[Path], Content]] = {}
+        self._readers: dict[str, Callable[..., Content]] = {}
 
-    def register(self, suffix: str, reader: Callable[[Path], Content]) -> None:
+    def register(self, suffix: str, reader: Callable[..., Content]) -> None:
         """Use ``reader`` for files with this lower-case suffix (".obj")."""
         self._readers[suffix] = reader
 
-    def read(self, path: Path, where: Where) -> Content:
-        """The content of a file. Raises SceneError at ``where``."""
+    def read(self, path: Path, where: Where, **options: bool) -> Content:
+        """The content of a file; ``options`` are the reader's own. Raises SceneError at ``where``."""
         reader = self._readers.get(path.suffix.lower())
         if reader is None:
             known = ", ".join(self._readers) or "none (import accuray.formats)"
             raise where.error("has no reader", value=path.name, allowed=known)
         try:
-            return reader(path)
+            return reader(path, **options)
         except (ValueError, OSError) as error:
             raise where.error(f"cannot be read: {error}", value=path.name) from error

@@ -9,6 +9,7 @@ from accuray import data
 from accuray.scene import schema as schemas
 from accuray.scene.amounts import NAMES
 from accuray.scene.errors import show
+from accuray.scene.keys import INTERPOLATION, takes_keys
 from accuray.scene.kinds import vocabulary
 from accuray.scene.models import MODEL
 from accuray.scene.plain import range_text
@@ -47,6 +48,10 @@ unknown one is an error that names the nearest known one.
   `{{look_at = {{origin = [x, y, z], target = [x, y, z], up = [0, 1, 0]}}}}` (moved to the origin, the -z axis turned to
   the target), or a list of such steps applied in order. A scale is one number or three; a negative one mirrors. What
   is made of triangles may be sheared and stretched; spheres, disks and instances may not.
+- **Keys**: what says "or keys" may change with time:
+  `{{keys = [{{time = 0, value = 1}}, {{time = "500 ms", value = 2}}], interpolation = "linear"}}`, or {others}.
+  Times are seconds since frame 0. The value holds for the whole frame; before the first key and after the last it
+  stays what it is there. [Animation](animation.md) says more.
 - **Arrays**: positions, normals and uvs are lists of rows; faces are lists of vertex indices that count from 0.
 
 ## Spectra
@@ -74,7 +79,7 @@ integral of ybar, one in W the integral from 360 to 830 nm. A `flux` is that of 
 light, or of each shape with an emissive material.
 """
 
-_TEXTURES = """A parameter whose kind ends in "or texture" takes `{ texture = "NAME" }` as well, with `scale = number`
+_TEXTURES = """A parameter whose kind says "or texture" takes `{ texture = "NAME" }` as well, with `scale = number`
 to multiply it; one that is a number or an index of refraction takes `channel = "red"` (default), `"green"`, `"blue"`
 or `"alpha"`."""
 
@@ -87,6 +92,7 @@ def reference_markdown() -> str:
             units=", ".join(f'`"{unit}"`' for unit in LENGTH_UNITS),
             files=", ".join(f"`{name}`" for name in data.files()),
             illuminants=", ".join(data.illuminants()),
+            others=" or ".join(f'`"{name}"`' for name in INTERPOLATION.choices if name != INTERPOLATION.default),
             glasses=", ".join(data.glasses()),
             amounts=", ".join(f"`{name}` ({' or '.join(choices)})" for name, choices in NAMES.items()),
         )
@@ -134,9 +140,12 @@ def _table(params: Iterable[Param]) -> str:
 
 
 def _kind(param: Param) -> str:
+    forms = [_plain_kind(param)]
     if param.texturable and param.kind != "reference":
-        return _plain_kind(param) + " or texture"
-    return _plain_kind(param)
+        forms.append("texture")
+    if takes_keys(param):
+        forms.append("keys")
+    return " or ".join(forms)
 
 
 def _plain_kind(param: Param) -> str:

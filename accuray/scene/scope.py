@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from accuray.scene.clock import STILL, Clock
-from accuray.scene.errors import Document
+from accuray.scene.errors import Document, Key
 from accuray.scene.paths import Confinement
 from accuray.scene.schema import Schema
 
@@ -20,8 +20,10 @@ class Scope:
     """The document under validation with its schema and folders.
 
     ``defaults`` holds resolved defaults by the identity of their parameter; ``mesh_reports`` collects what the
-    readers of mesh files counted, by the name of the shape; ``images`` keeps the pictures that were read, by file;
-    ``clock`` is the moment of the frame.
+    readers of mesh files counted, by the name of the shape; ``images`` keeps the pictures that were read, by file,
+    ``meshes`` the arrays of mesh files, by file, length unit and whether they have polygons, ``arrays`` those that the
+    document itself holds, by key path: further frames of an animation find them there. ``clock`` is the moment of the
+    frame.
     """
 
     document: Document
@@ -30,7 +32,14 @@ class Scope:
     defaults: dict[int, Any] = field(default_factory=dict)
     mesh_reports: dict[str, dict[str, Any]] = field(default_factory=dict)
     images: dict[Path, Any] = field(default_factory=dict)
+    meshes: dict[tuple[Path, str, bool], dict[str, Any]] = field(default_factory=dict)
+    arrays: dict[tuple[Key, ...], Any] = field(default_factory=dict)
     clock: Clock = STILL
+
+    def defines(self, section: str, name: str) -> bool:
+        """Is there an object of this name in a section?"""
+        table = self.document.data.get(section)
+        return isinstance(table, dict) and name in table
 
     def names(self, section: str) -> list[str]:
         """Names defined in a section ("materials", "spectra", ...), in the order of the file."""

@@ -16,6 +16,7 @@ from typing import Any
 from accuray import data
 from accuray.scene import amounts, units
 from accuray.scene.errors import SceneError, Where
+from accuray.scene.keys import first_value, is_keyed, resolve_keyed
 from accuray.scene.plain import finite_number, in_range, number_list, quantity, range_text, text_value
 from accuray.scene.schema import Param
 from accuray.scene.scope import Scope
@@ -64,6 +65,8 @@ def parse_spectrum(param: Param, value: Any, where: Where, scope: Scope) -> Spec
         if value.role != param.role:
             raise where.error(f"is {_article(value.role)}, not {_article(param.role)}", value=value)
         spectrum = value
+    elif is_keyed(value):
+        return _from_keys(reading, value)
     elif isinstance(value, dict):
         return _from_table(reading, value)
     elif isinstance(value, str):
@@ -82,11 +85,12 @@ def parse_spectrum(param: Param, value: Any, where: Where, scope: Scope) -> Spec
 
 def check_unused(value: Any, where: Where, scope: Scope) -> None:
     """Check a [spectra] entry that nothing refers to: as an emission, the least restricted role, if it can be one."""
-    roles = ROLES_OF_FORM[_form_key(where, value)] if isinstance(value, dict) else ("emission",)
+    sample, place = first_value(value, where)
+    roles = ROLES_OF_FORM[_form_key(place, sample)] if isinstance(sample, dict) else ("emission",)
     role = "emission" if "emission" in roles else roles[0]
-    amount = next((key for key in value if key in amounts.NAMES), "") if isinstance(value, dict) else ""
+    amount = next((key for key in sample if key in amounts.NAMES), "") if isinstance(sample, dict) else ""
     unit, takes_flux = amounts.spectral_unit(amount) if amount else (RADIANCE_UNIT, False)
-    param = Param(where.key, "spectrum", role=role, unit=unit, takes_flux=takes_flux, min=0.0)
+    param = Param(where.key, "spectrum", role=role, unit=unit, takes_flux=takes_flux, min=0.0, animatable=True)
     parse_spectrum(param, value, where, scope)
 
 
@@ -113,6 +117,16 @@ def _allowed(param: Param) -> str:
         "index": "a number, the name of a glass or of a spectrum in [spectra], or a table",
     }
     return examples[param.role]
+
+
+def _from_keys(reading: _Reading, value: dict[str, Any]) -> Spectrum:
+    param, scope = reading.param, reading.scope
+
+    def plain(item: Any, place: Where) -> Spectrum:
+        return parse_spectrum(param, item, place, scope)
+
+    spectrum: Spectrum = resolve_keyed(param, value, reading.where, scope, plain)
+    return spectrum
 
 
 def _from_text(reading: _Reading, text: str) -> Spectrum:

@@ -12,6 +12,7 @@ from accuray.scene.errors import Where
 from accuray.scene.plain import choice, quantity
 from accuray.scene.schema import Param, Schema, Type
 from accuray.scene.scope import Scope
+from accuray.scene.shapes import shown_by
 
 CHANNELS = ("red", "green", "blue", "alpha")
 MAP = "map"
@@ -76,7 +77,7 @@ def uses_of(table: dict[str, Any]) -> Iterator[tuple[str, TextureUse]]:
     return ((key, value) for key, value in table.items() if isinstance(value, TextureUse))
 
 
-def settle_colour_spaces(textures: Objects, materials: Objects, where: Where) -> None:
+def settle_colour_spaces(textures: Objects, materials: Objects, shapes: Objects, where: Where) -> None:
     """Puts what ``color_space = "auto"`` means in its place: it follows from the stored texels and from the uses.
 
     Integers are sRGB where they give spectra and data where they give numbers; floats are linear. Raises SceneError
@@ -88,13 +89,19 @@ def settle_colour_spaces(textures: Objects, materials: Objects, where: Where) ->
         if texture["pixels"].dtype.kind == "f":
             texture["color_space"] = "linear"
             continue
-        found = [(m, key, use) for m, table in materials.items() for key, use in uses_of(table) if use.texture == name]
-        numbers = [(m, key) for m, key, use in found if use.channel]
-        colours = [(m, key) for m, key, use in found if not use.channel]
+        found = [
+            ((section, user, key), use)
+            for section, objects in (("materials", materials), ("shapes", shapes))
+            for user, table in objects.items()
+            for key, use in uses_of(table)
+            if use.texture == name
+        ]
+        numbers = [place for place, use in found if use.channel]
+        colours = [place for place, use in found if not use.channel]
         if numbers and colours:
             raise where.child(name, "color_space").error(
-                f"is auto, but materials.{'.'.join(colours[0])} takes colours from the texture and "
-                f"materials.{'.'.join(numbers[0])} numbers",
+                f"is auto, but {'.'.join(colours[0])} takes colours from the texture and "
+                f"{'.'.join(numbers[0])} numbers",
                 allowed='"srgb", "linear" or "data"; or two textures, which share one file',
             )
         texture["color_space"] = "data" if numbers else "srgb"
@@ -116,10 +123,10 @@ def check_vertices(textures: Objects, materials: Objects, shapes: Objects, schem
         name: [(part, *use) for part in all_parts(materials, name, schema) for use in uses_of(materials[part])]
         for name in materials
     }
-    for name, shape in shapes.items():
-        for member in shape.get("of") or (name,):
-            for part, key, use in uses[shape["material"] or shapes[member]["material"]]:
-                lack = _lack(types[textures[use.texture]["type"]], shapes[member])
+    for name, seen in shown_by(shapes).items():
+        for member, material in sorted(seen):
+            for part, key, use in uses[material]:
+                lack = lack_of(types[textures[use.texture]["type"]], shapes[member])
                 if lack is not None:
                     via = f' (shown by "{name}")' if member != name else ""
                     user = f'the texture "{use.texture}" of materials.{part}.{key}'
@@ -128,7 +135,7 @@ def check_vertices(textures: Objects, materials: Objects, shapes: Objects, schem
                     )
 
 
-def _lack(texture: Type, shape: dict[str, Any]) -> tuple[str, str] | None:
+def lack_of(texture: Type, shape: dict[str, Any]) -> tuple[str, str] | None:
     """What the shape lacks that the texture reads, and what has it."""
     if texture.reads_uv and shape["type"] == "mesh" and shape["uvs"] is None:
         return "texture coordinates", "a mesh with uvs (`vt` in OBJ, `s` and `t` or `u` and `v` in PLY)"

@@ -57,7 +57,7 @@ def parse_transform(value: Any, where: Where) -> npt.NDArray[np.float64]:
         for index, step in enumerate(value):
             if not isinstance(step, dict):
                 raise where.child(index).error("is not a step of a transform", value=step, allowed=ALLOWED)
-            rows = _product(_step(step, where.child(index)), rows)
+            rows = product(_step(step, where.child(index)), rows)
     else:
         raise where.error("is not a transform", value=value, allowed=ALLOWED)
     matrix = np.array(rows, dtype=np.float64)
@@ -91,23 +91,26 @@ def _step(step: dict[str, Any], where: Where) -> Rows:
         return _look_at(step["look_at"], where.child("look_at"))
     rows = IDENTITY
     if "scale" in step:
-        rows = _product(_scaling(step["scale"], where.child("scale")), rows)
+        x, y, z = parse_scale(step["scale"], where.child("scale"))
+        rows = product(((x, 0.0, 0.0, 0.0), (0.0, y, 0.0, 0.0), (0.0, 0.0, z, 0.0), IDENTITY[3]), rows)
     if "rotate" in step:
-        rows = _product(_rotation(step["rotate"], where.child("rotate")), rows)
+        rows = product(rotation_about(*parse_rotation(step["rotate"], where.child("rotate"))), rows)
     if "translate" in step:
-        x, y, z = _vector(step["translate"], where.child("translate"), LENGTH)
-        rows = _product(((1.0, 0.0, 0.0, x), (0.0, 1.0, 0.0, y), (0.0, 0.0, 1.0, z), IDENTITY[3]), rows)
+        x, y, z = parse_vector(step["translate"], where.child("translate"), LENGTH)
+        rows = product(((1.0, 0.0, 0.0, x), (0.0, 1.0, 0.0, y), (0.0, 0.0, 1.0, z), IDENTITY[3]), rows)
     return rows
 
 
-def _vector(value: Any, where: Where, param: Param) -> tuple[float, float, float]:
+def parse_vector(value: Any, where: Where, param: Param) -> Vector:
+    """Three quantities of the parameter's unit. Raises SceneError."""
     if not isinstance(value, (list, tuple)) or len(value) != 3:
         raise where.error("is not a vector", value=value, allowed="[x, y, z]")
     x, y, z = (quantity(param, item, where.child(index)) for index, item in enumerate(value))
     return x, y, z
 
 
-def _scaling(value: Any, where: Where) -> Rows:
+def parse_scale(value: Any, where: Where) -> Vector:
+    """Factors of the three axes, none of them 0. Raises SceneError."""
     allowed = "a number other than 0, or one for each of x, y and z"
     factors = value if isinstance(value, (list, tuple)) else [value] * 3
     if len(factors) != 3:
@@ -115,19 +118,27 @@ def _scaling(value: Any, where: Where) -> Rows:
     x, y, z = (finite_number(factor, where, allowed) for factor in factors)
     if 0.0 in (x, y, z):
         raise where.error("flattens", value=value, allowed=allowed)
-    return ((x, 0.0, 0.0, 0.0), (0.0, y, 0.0, 0.0), (0.0, 0.0, z, 0.0), IDENTITY[3])
+    return x, y, z
 
 
-def _rotation(value: Any, where: Where) -> Rows:
-    """Rotation about an axis through the origin, counter-clockwise seen from its tip (Rodrigues 1840)."""
-    if not isinstance(value, dict) or set(value) != {"axis", "angle"}:
-        raise where.error("is not a rotation", value=value, allowed="{axis = [x, y, z], angle = 30}")
-    x, y, z = _vector(value["axis"], where.child("axis"), Param("axis", "vec"))
+def parse_rotation(value: Any, where: Where) -> tuple[Vector, float]:
+    """Unit axis and angle in degrees, of any size, of a rotation. Raises SceneError."""
+    if not isinstance(value, dict) or set(value) not in ({"axis", "angle"}, {"axis", "turns"}):
+        raise where.error("is not a rotation", value=value, allowed="{axis = [x, y, z], angle = 30}, or turns = 2.5")
+    x, y, z = parse_vector(value["axis"], where.child("axis"), Param("axis", "vec"))
     length = math.sqrt(x * x + y * y + z * z)
     if not 1e-100 < length < 1e100:
         raise where.child("axis").error("has no direction", value=value["axis"], allowed="a vector other than 0")
-    x, y, z = x / length, y / length, z / length
-    degrees, _ = quantities(ANGLE, value["angle"], where.child("angle"))
+    if "turns" in value:
+        degrees = 360.0 * finite_number(value["turns"], where.child("turns"), "a number of turns, 1 all the way round")
+    else:
+        degrees, _ = quantities(ANGLE, value["angle"], where.child("angle"))
+    return (x / length, y / length, z / length), degrees
+
+
+def rotation_about(axis: Vector, degrees: float) -> Rows:
+    """Rotation about a unit axis through the origin, counter-clockwise seen from its tip (Rodrigues 1840)."""
+    x, y, z = axis
     sin, cos = sine_cosine(degrees)
     t = 1.0 - cos
     return (
@@ -171,8 +182,8 @@ def _look_at(value: Any, where: Where) -> Rows:
         raise where.error(
             "is no look_at", value=value, allowed="{origin = [x, y, z], target = [x, y, z], up = [x, y, z]}"
         )
-    origin, target = (_vector(value[key], where.child(key), LENGTH) for key in known[:2])
-    up = _vector(value.get("up", [0, 1, 0]), where.child("up"), Param("up", "vec"))
+    origin, target = (parse_vector(value[key], where.child(key), LENGTH) for key in known[:2])
+    up = parse_vector(value.get("up", [0, 1, 0]), where.child("up"), Param("up", "vec"))
     z = _unit((origin[0] - target[0], origin[1] - target[1], origin[2] - target[2]))
     x = None if z is None else _unit(_cross(up, z))
     if z is None or x is None:
@@ -229,7 +240,7 @@ def _flattened(value: Any) -> list[Any] | None:
     return flat
 
 
-def _product(left: Rows, right: Rows) -> Rows:
+def product(left: Rows, right: Rows) -> Rows:
     """Matrix product with the sums in index order."""
 
     def entry(i: int, j: int) -> float:

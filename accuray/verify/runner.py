@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from accuray.verify import cameras, direct, enclosures, energy, fresnel, refraction, sky, spectra
+from accuray.verify import cameras, direct, enclosures, energy, fresnel, motion, refraction, sky, spectra
 from accuray.verify.case import POWER, Case, FloatArray, Row
 from accuray.verify.report import Report
 
@@ -23,6 +23,7 @@ CHAPTERS = {
     "C4": fresnel,
     "C5": refraction,
     "C7": cameras,
+    "C7, motion": motion,
     "C8": spectra,
     "C9": sky,
 }

@@ -99,6 +99,39 @@ def emission(tree: Any, material: Any, rgb: list[float], strength: float) -> Any
     return shader
 
 
+def front_only(tree: Any, shader: Any) -> Any:
+    """The shader in front, nothing on the back."""
+    side, mix = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeMixShader")
+    tree.links.new(side.outputs["Backfacing"], mix.inputs["Fac"])
+    tree.links.new(shader.outputs[0], mix.inputs[1])
+    return mix
+
+
+def surroundings(bpy: Any, scene: Any, path: Path) -> None:
+    """A map with its middle at -Z, its right half towards +X and its top at +Y; sampled at its own resolution.
+
+    Blender has the middle at +X, the right half towards -Y and the top at +Z.
+    """
+    world = bpy.data.worlds.new("world")
+    world.use_nodes = True
+    tree = world.node_tree
+    picture, mapping = tree.nodes.new("ShaderNodeTexEnvironment"), tree.nodes.new("ShaderNodeMapping")
+    place = tree.nodes.new("ShaderNodeTexCoord")
+    picture.image = bpy.data.images.load(str(path))
+    picture.image.colorspace_settings.name = SCENE_LINEAR
+    mapping.vector_type = "VECTOR"
+    mapping.inputs["Rotation"].default_value = ROTATION_TO_BLENDER
+    tree.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs["Vector"], picture.inputs["Vector"])
+    tree.links.new(picture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", picture.image.size[0]
+    scene.world = world
+
+
+ROTATION_TO_BLENDER = (np.pi / 2, 0.0, -np.pi / 2)
+"""Euler angles XYZ that turn (x, y, z) into (-z, -x, y)."""
+
+
 def picture(bpy: Any, tree: Any, path: Path, space: str, scale: tuple[float, float] = (1.0, 1.0)) -> Any:
     """An image file over the surface's coordinates times ``scale``; ``space`` is Blender's name, such as sRGB."""
     node, mapping = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeMapping")

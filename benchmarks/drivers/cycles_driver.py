@@ -28,7 +28,9 @@ class Cycles:
         folder = Path(job["scene"])
         materials = {name: self._material(folder, name, scene) for name in scene["materials"]}
         for mesh in scene["meshes"]:
-            self._mesh(folder / mesh["file"], mesh, materials[mesh["material"]])
+            self._mesh(folder, mesh, materials[mesh["material"]])
+        if scene["sky"]:
+            blender.surroundings(self.bpy, self.scene, folder / scene["sky"]["file"])
 
     def render(self, spp: int, seed: int) -> float:
         self.scene.cycles.samples = spp
@@ -55,8 +57,9 @@ class Cycles:
         if name == scene["emitter"]:
             add, peak = tree.nodes.new("ShaderNodeAddShader"), max(scene["emission"]["rgb"])
             emission = blender.emission(tree, material, [value / peak for value in scene["emission"]["rgb"]], peak)
+            light = blender.front_only(tree, emission) if scene["lamp_backs"] else emission
             tree.links.new(surface, add.inputs[0])
-            tree.links.new(emission.outputs[0], add.inputs[1])
+            tree.links.new(light.outputs[0], add.inputs[1])
             surface = add.outputs[0]
         output = tree.nodes.new("ShaderNodeOutputMaterial")
         tree.links.new(surface, output.inputs["Surface"])
@@ -74,8 +77,9 @@ class Cycles:
         tree.links.new(picture.outputs["Color"], shader.inputs["Color"])
         return shader
 
-    def _mesh(self, path: Path, description: dict[str, Any], material: Any) -> None:
-        vertices, triangles = read_ply(path)
+    def _mesh(self, folder: Path, description: dict[str, Any], material: Any) -> None:
+        """The mesh, shown where it lies or by its copies."""
+        vertices, triangles = read_ply(folder / description["file"])
         mesh = self.bpy.data.meshes.new(description["name"])
         mesh.vertices.add(len(vertices))
         mesh.vertices.foreach_set("co", np.ascontiguousarray(vertices[:, :3]).ravel())
@@ -92,7 +96,11 @@ class Cycles:
             uvs.data.foreach_set("uv", vertices[triangles.ravel(), 6:8].ravel())
         else:
             mesh.shade_flat()
-        self.scene.collection.objects.link(self.bpy.data.objects.new(description["name"], mesh))
+        transforms = np.load(folder / description["copies"]) if description["copies"] else np.eye(4)[None, :3]
+        for rows in transforms:
+            shown = self.bpy.data.objects.new(description["name"], mesh)
+            shown.matrix_world = np.vstack([rows, [0.0, 0.0, 0.0, 1.0]]).T.tolist()
+            self.scene.collection.objects.link(shown)
 
 
 if __name__ == "__main__":

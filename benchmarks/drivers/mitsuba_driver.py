@@ -36,7 +36,7 @@ class Mitsuba:
     def _description(self, job: dict[str, Any], scene: dict[str, Any]) -> dict[str, Any]:
         folder = Path(job["scene"])
         materials = {name: self._bsdf(folder, table) for name, table in scene["materials"].items()}
-        shapes = {}
+        shapes: dict[str, Any] = {}
         for mesh in scene["meshes"]:
             shape: dict[str, Any] = {
                 "type": "ply",
@@ -46,9 +46,32 @@ class Mitsuba:
             }
             if mesh["material"] == scene["emitter"]:
                 shape["emitter"] = {"type": "area", "radiance": self._spectrum(scene["emission"])}
-            shapes[mesh["name"]] = shape
+            if mesh["copies"]:
+                shapes[f"{mesh['name']}-group"] = {"type": "shapegroup", mesh["name"]: shape}
+                shapes |= self._copies(mesh["name"], np.load(folder / mesh["copies"]))
+            else:
+                shapes[mesh["name"]] = shape
+        if scene["sky"]:
+            shapes["sky"] = self._sky(folder / scene["sky"]["from_pole_to_pole"])
         integrator = {"type": "path", "max_depth": -1, "rr_depth": scene["roulette_start"]}
         return {"type": "scene", "integrator": integrator, "sensor": self._sensor(job, scene), **shapes}
+
+    def _copies(self, name: str, transforms: Any) -> dict[str, Any]:
+        """An instance of the group for each of the transforms (N, 3, 4)."""
+        last = np.array([[0.0, 0.0, 0.0, 1.0]])
+        return {
+            f"{name}-{number}": {
+                "type": "instance",
+                "group": {"type": "ref", "id": f"{name}-group"},
+                "to_world": self.mitsuba.ScalarTransform4f(np.vstack([rows, last])),
+            }
+            for number, rows in enumerate(transforms)
+        }
+
+    def _sky(self, path: Path) -> dict[str, Any]:
+        """Mitsuba has the middle of a map at +Z, the scenes have it at -Z."""
+        turned = self.mitsuba.ScalarTransform4f().rotate([0, 1, 0], 180)
+        return {"type": "envmap", "filename": str(path), "to_world": turned}
 
     def _bsdf(self, folder: Path, table: dict[str, Any]) -> dict[str, Any]:
         """Mitsuba's roughness, alpha, is the square of the perceived one."""
@@ -81,9 +104,11 @@ class Mitsuba:
         return {"type": "perspective", "to_world": to_world, "film": film, "sampler": sampler, **field}
 
     def _spectrum(self, spectrum: dict[str, Any]) -> dict[str, Any]:
-        """The measured table (Mitsuba has 0 outside it), or its RGB."""
+        """The measured table (Mitsuba has 0 outside it), a plain number for a flat one, or the RGB."""
         if not self.spectral:
             return {"type": "rgb", "value": list(spectrum["rgb"])}
+        if len(set(spectrum["values"])) == 1:
+            return {"type": "uniform", "value": spectrum["values"][0]}
         return {"type": "spectrum", "value": list(zip(spectrum["wavelengths"], spectrum["values"], strict=True))}
 
 

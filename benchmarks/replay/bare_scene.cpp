@@ -29,8 +29,8 @@ void BareScene::attach(const SceneView& view, uint32_t number) {
   }
   const Mesh& mesh = view.as<Mesh>(record.shape);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, view.at(mesh.positions), 0, 12,
-                             mesh.positions.count / 3);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, view.at(mesh.vertices), 0,
+                             mesh.stride * sizeof(float), mesh.vertex_count);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, view.at(mesh.indices), 0, 12,
                              mesh.indices.count / 3);
   rtcSetGeometryMask(geometry, 0xffffffffu);

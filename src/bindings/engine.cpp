@@ -78,7 +78,7 @@ std::unique_ptr<Pass> render_pass(std::shared_ptr<LoadedScene> scene, Sums sums,
   Pass* p = pass.get();
   auto task = [p, film, request, tiles, first, count](uint32_t i, const EmbreeAccel& accel,
                                                       const std::atomic<bool>& stop) {
-    const SceneView& view = p->scene->accel.view();
+    const SceneView& view = p->scene->view;
     const auto render = film.channels == film_channels ? &render_tile : &render_tile_layers;
     const bool done = render(view, accel, request, film, tiles[i], static_cast<uint32_t>(first), count, stop);
     p->finished[i] = done ? 1 : 0;
@@ -115,8 +115,8 @@ std::unique_ptr<Pass> ray_pass(std::shared_ptr<LoadedScene> scene, Sums sums, Dr
   auto task = [p, film, request, rays, first, count](uint32_t i, const EmbreeAccel& accel,
                                                      const std::atomic<bool>& stop) {
     const bool done =
-        trace_rays(p->scene->accel.view(), accel, request, p->origins.data(), p->directions.data(), film,
-                   i * kRaysPerTask, std::min((i + 1) * kRaysPerTask, rays), static_cast<uint32_t>(first), count, stop);
+        trace_rays(p->scene->view, accel, request, p->origins.data(), p->directions.data(), film, i * kRaysPerTask,
+                   std::min((i + 1) * kRaysPerTask, rays), static_cast<uint32_t>(first), count, stop);
     p->finished[i] = done ? 1 : 0;
     return done;
   };
@@ -136,13 +136,26 @@ void bind_engine(nb::module_& module) {
   nb::class_<LoadedScene>(engine, "LoadedScene")
       .def(
           "__init__",
-          [](LoadedScene* self, const Block& block) {
+          [](LoadedScene* self, const Block& block, const LoadedScene* before, bool same_shapes) {
             const nb::gil_scoped_release release;
-            new (self) LoadedScene(block);
+            if (before != nullptr && same_shapes) {
+              new (self) LoadedScene(LoadedScene::with_shapes_of(*before, block));
+            } else {
+              new (self) LoadedScene(block, before);
+            }
           },
-          "block"_a)
+          "block"_a, "before"_a.none() = nullptr, "same_shapes"_a = false,
+          "before: an earlier frame, parts of whose acceleration structure may serve; all of it with same_shapes, "
+          "which "
+          "says that the shapes are the same, bit for bit.")
+      .def_prop_ro(
+          "built_prototypes", [](const LoadedScene& scene) { return scene.accel.built_prototypes(); },
+          "How many structures were made over what instances show.")
+      .def_prop_ro(
+          "structure", [](const LoadedScene& scene) { return reinterpret_cast<uintptr_t>(scene.shapes.get()); },
+          "The same number for scenes that share their acceleration structure.")
       .def_prop_ro("accel_bytes", [](const LoadedScene& scene) { return scene.accel.bytes(); })
-      .def_prop_ro("lights", [](const LoadedScene& scene) { return scene.accel.view().root->lights.count; });
+      .def_prop_ro("lights", [](const LoadedScene& scene) { return scene.view.root->lights.count; });
   nb::class_<Pass>(engine, "Pass")
       .def("wait", &Pass::wait, "seconds"_a, "True once the pass has ended; waits at most so long.")
       .def("stop", [](Pass& pass) { pass.pool->stop(); })

@@ -4,6 +4,7 @@
 
 #include "bindings/bindings.h"
 #include "lower/builder.h"
+#include "lower/camera_view.h"
 #include "lower/rgb_table.h"
 #include "lower/solids.h"
 
@@ -31,13 +32,14 @@ using OptionalMatrix = std::optional<Matrix>;
 
 MeshArrays to_arrays(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
                      const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
-                     const std::optional<Rows<float, 4>>& colors) {
-  const size_t vertices = positions.shape(0);
-  if ((normals && normals->shape(0) != vertices) || (uvs && uvs->shape(0) != vertices) ||
-      (colors && colors->shape(0) != vertices)) {
+                     const std::optional<Rows<float, 4>>& colors, uint32_t segments) {
+  const size_t rows = positions.shape(0);
+  const size_t vertices = rows / (size_t{segments} + 1);
+  if (vertices * (size_t{segments} + 1) != rows || (normals && normals->shape(0) != rows) ||
+      (uvs && uvs->shape(0) != vertices) || (colors && colors->shape(0) != vertices)) {
     throw std::invalid_argument("normals, uvs and colors need one row for each position");
   }
-  MeshArrays arrays{to_vector(positions), to_vector(indices), {}, {}, {}};
+  MeshArrays arrays{to_vector(positions), to_vector(indices), {}, {}, {}, segments};
   for (const uint32_t index : arrays.indices) {
     if (index >= vertices)
       throw std::invalid_argument("a face names vertex " + std::to_string(index) + " of " + std::to_string(vertices));
@@ -46,6 +48,12 @@ MeshArrays to_arrays(const Rows<float, 3>& positions, const Rows<uint32_t, 3>& i
   if (uvs) arrays.uvs = to_vector(*uvs);
   if (colors) arrays.colors = to_vector(*colors);
   return arrays;
+}
+
+std::vector<Matrix> to_matrices(const Rows<double, 12>& rows) {
+  std::vector<Matrix> matrices(rows.shape(0));
+  for (size_t i = 0; i < matrices.size(); ++i) std::copy_n(rows.data() + 12 * i, 12, matrices[i].begin());
+  return matrices;
 }
 
 void bind_spectra(nb::class_<SceneBuilder>& builder) {
@@ -125,8 +133,10 @@ void bind_textures(nb::class_<SceneBuilder>& builder) {
   builder
       .def(
           "add_picture",
-          [](SceneBuilder& b, const Pixels& pixels) { return b.textures().add_picture(to_picture(pixels)); },
-          "pixels"_a, "(height, width, channels) of uint8, uint16, float16 or float32; it must not change.")
+          [](SceneBuilder& b, std::shared_ptr<SharedPicture> picture) {
+            return b.textures().add_picture(std::move(picture));
+          },
+          "picture"_a)
       .def(
           "add_texture",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, std::optional<uint32_t> picture,
@@ -151,7 +161,17 @@ void bind_textures(nb::class_<SceneBuilder>& builder) {
       .def(
           "textured_emission",
           [](SceneBuilder& b, uint32_t texture, double scale) { return b.spectra().textured_emission(texture, scale); },
-          "texture"_a, "scale"_a);
+          "texture"_a, "scale"_a)
+      .def(
+          "texture_values",
+          [](const SceneBuilder& b, uint32_t texture, const std::optional<Rows<float, 2>>& uvs,
+             const Rows<float, 3>& points) {
+            if (uvs && uvs->shape(0) != points.shape(0))
+              throw std::invalid_argument("uvs and points must have as many rows as each other");
+            const std::span<const float> at = uvs ? std::span(uvs->data(), uvs->size()) : std::span<const float>();
+            return to_numpy(b.texture_values(texture, at, {points.data(), points.size()}), 3);
+          },
+          "texture"_a, "uvs"_a.none(), "points"_a, "Red, green and blue (N, 3) at points of a shape's own space.");
 }
 
 // Vertical angles (V,), horizontal angles (H,), candelas (H * V,).
@@ -185,22 +205,35 @@ void bind_surfaces(nb::class_<SceneBuilder>& builder) {
           "type"_a, "values"_a, "header"_a, "emission"_a.none())
       .def(
           "add_mesh",
-          [](SceneBuilder& b, const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
-             const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
-             const std::optional<Rows<float, 4>>& colors, const OptionalMatrix& transform, uint32_t material,
-             bool prototype) {
-            return b.add_mesh(to_arrays(positions, indices, normals, uvs, colors), transform, material, prototype);
+          [](SceneBuilder& b, const PlacedMesh& mesh, uint32_t material, bool prototype) {
+            return b.add_mesh(mesh, material, prototype);
           },
-          "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(), "transform"_a.none(),
-          "material"_a, "prototype"_a)
+          "mesh"_a, "material"_a, "prototype"_a)
       .def(
           "add_shape",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values, const OptionalMatrix& transform,
              uint32_t material,
              bool prototype) { return b.add_shape(type, to_values(values), transform, material, prototype); },
           "type"_a, "values"_a, "transform"_a.none(), "material"_a, "prototype"_a)
-      .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(),
-           "material"_a.none());
+      .def("add_instance", &SceneBuilder::add_instance, "first"_a, "count"_a, "transform"_a.none(), "material"_a.none())
+      .def(
+          "add_moving_instance",
+          [](SceneBuilder& b, uint32_t first, uint32_t count, const Rows<double, 12>& keys,
+             std::optional<uint32_t> material) { b.add_moving_instance(first, count, to_matrices(keys), material); },
+          "first"_a, "count"_a, "keys"_a, "material"_a.none(),
+          "keys (K, 12): transforms at equal steps of time, the upper three rows, row by row.")
+      .def("repeat_geometry", &SceneBuilder::repeat_geometry, "geometry"_a)
+      .def("reserve_instances", &SceneBuilder::reserve_instances, "count"_a)
+      .def(
+          "add_instances",
+          [](SceneBuilder& b, uint32_t first, uint32_t count, const Rows<double, 12>& transforms,
+             std::optional<uint32_t> material) {
+            const auto* matrices = reinterpret_cast<const Matrix*>(transforms.data());
+            const nb::gil_scoped_release release;
+            b.add_instances(first, count, {matrices, transforms.shape(0)}, material);
+          },
+          "first"_a, "count"_a, "transforms"_a, "material"_a.none(), "transforms: (N, 12), three rows of four.")
+      .def("most_lights", &SceneBuilder::most_lights, "first"_a, "count"_a, "material"_a.none());
 }
 
 void bind_lights(nb::class_<SceneBuilder>& builder) {
@@ -244,6 +277,15 @@ void bind_view(nb::class_<SceneBuilder>& builder) {
           },
           "type"_a, "values"_a, "width"_a, "height"_a)
       .def(
+          "set_camera_motion",
+          [](SceneBuilder& b, const Rows<double, 12>& keys) { b.set_camera_motion(to_matrices(keys)); }, "keys"_a)
+      .def(
+          "set_shutter",
+          [](SceneBuilder& b, const Column<double>& times, const Column<double>& transmissions) {
+            b.set_shutter(span_of(times), span_of(transmissions));
+          },
+          "times"_a, "transmissions"_a)
+      .def(
           "set_filter",
           [](SceneBuilder& b, const std::string& type, const nb::dict& values) {
             b.set_filter(type, to_values(values));
@@ -256,6 +298,7 @@ void bind_view(nb::class_<SceneBuilder>& builder) {
           },
           "type"_a, "values"_a)
       .def("set_film", &SceneBuilder::set_film, "step"_a, "hide_environment"_a)
+      .def("set_compact", &SceneBuilder::set_compact, "compact"_a)
       .def("finish", &SceneBuilder::finish, "The lowered scene; the builder must not be used afterwards.");
 }
 
@@ -276,6 +319,32 @@ nb::tuple tessellated(const std::string& type, const nb::dict& values, const std
   if (!mesh.normals.empty()) normals = to_numpy(std::move(mesh.normals), 3);
   return nb::make_tuple(to_numpy(std::move(mesh.positions), 3), to_numpy(std::move(mesh.indices), 3), normals,
                         to_numpy(std::move(mesh.uvs), 2));
+}
+
+void bind_shared(nb::module_& lower) {
+  nb::class_<SharedPicture>(lower, "Picture", "A picture with what was made of it, which many scenes may show.")
+      .def(
+          "__init__",
+          [](SharedPicture* self, const Pixels& pixels) { new (self) SharedPicture{to_picture(pixels), {}, {}}; },
+          "pixels"_a, "(height, width, channels) of uint8, uint16, float16 or float32; it must not change.");
+  nb::class_<PlacedMesh>(lower, "PlacedMesh", "A mesh where it stands, which many scenes may show.")
+      .def_prop_ro(
+          "box",
+          [](const PlacedMesh& mesh) {
+            const Vec3 low = mesh.bounds.empty() ? Vec3{0, 0, 0} : mesh.bounds.low;
+            const Vec3 high = mesh.bounds.empty() ? Vec3{0, 0, 0} : mesh.bounds.high;
+            return std::array<std::array<float, 3>, 2>{{{low.x, low.y, low.z}, {high.x, high.y, high.z}}};
+          },
+          "Low and high corner around it, whatever form it takes.");
+  lower.def(
+      "place_mesh",
+      [](const Rows<float, 3>& positions, const Rows<uint32_t, 3>& indices,
+         const std::optional<Rows<float, 3>>& normals, const std::optional<Rows<float, 2>>& uvs,
+         const std::optional<Rows<float, 4>>& colors, const OptionalMatrix& transform, uint32_t segments) {
+        return place_mesh(to_arrays(positions, indices, normals, uvs, colors, segments), transform);
+      },
+      "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(), "transform"_a.none(),
+      "segments"_a = 0);
 }
 
 void bind_lamps(nb::module_& lower) {
@@ -327,9 +396,24 @@ void bind_lower(nb::module_& module) {
   bind_view(builder);
 
   bind_lamps(lower);
+  bind_shared(lower);
+  lower.def(
+      "with_camera",
+      [](const Block& block, const std::string& type, const nb::dict& values, double width, double height) {
+        return with_camera(block, type, to_values(values), {width, height});
+      },
+      "block"_a, "type"_a, "values"_a, "width"_a, "height"_a,
+      "The block seen through another camera, of the kind that it has; None if the camera is of another kind.");
+  lower.def(
+      "camera_view",
+      [](const std::string& type, const nb::dict& values, double width, double height) {
+        return camera_view(type, to_values(values), {width, height});
+      },
+      "type"_a, "values"_a, "width"_a, "height"_a, "How long things are in a camera's picture (mesh.View).");
   lower.attr("SOLIDS") = names_of(Solids{});
   lower.def("tessellate", &tessellated, "type"_a, "values"_a, "newell"_a.none(),
-            "A shape of SOLIDS as (positions, indices, normals or None, uvs); a teapot from (512, 3) control points.");
+            "A shape of SOLIDS or a rectangle as (positions, indices, normals or None, uvs); a teapot from (512, 3) "
+            "control points.");
 
   lower.attr("RGB_TABLE_NODES") = kRgbTableNodes;
   lower.def("rgb_table_nodes", [](int n) { return to_numpy(rgb_table_scale_nodes(n), 0); }, "n"_a);

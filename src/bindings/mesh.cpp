@@ -1,7 +1,7 @@
 // The mesh readers.
 #include "mesh/mesh.h"
 
-#include "bindings/bindings.h"
+#include "bindings/py_mesh.h"
 #include "lower/srgb.h"
 #include "mesh/checks.h"
 #include "mesh/error.h"
@@ -13,13 +13,6 @@
 namespace accuray::bindings {
 
 namespace {
-
-// A mesh as numpy arrays that own the reader's memory.
-struct PyMesh {
-  nb::object positions, indices, normals, uvs, colors, materials;
-  nb::dict report;
-  std::vector<std::string> material_names, libraries;
-};
 
 nb::dict describe(const mesh::MeshReport& report) {
   nb::dict d;
@@ -35,9 +28,12 @@ nb::dict describe(const mesh::MeshReport& report) {
   return d;
 }
 
+}  // namespace
+
 PyMesh to_python(mesh::MeshData data) {
   PyMesh result{to_numpy(std::move(data.positions), 3),
                 to_numpy(std::move(data.indices), 3),
+                nb::none(),
                 nb::none(),
                 nb::none(),
                 nb::none(),
@@ -48,9 +44,12 @@ PyMesh to_python(mesh::MeshData data) {
   if (!data.normals.empty()) result.normals = to_numpy(std::move(data.normals), 3);
   if (!data.uvs.empty()) result.uvs = to_numpy(std::move(data.uvs), 2);
   if (!data.colors.empty()) result.colors = to_numpy(std::move(data.colors), 4);
+  if (!data.polygons.empty()) result.polygons = to_numpy(std::move(data.polygons), 0);
   if (!data.materials.empty()) result.materials = to_numpy(std::move(data.materials), 0);
   return result;
 }
+
+namespace {
 
 // Alpha stays as it is.
 void undo_srgb(std::vector<float>& colors) {
@@ -59,12 +58,12 @@ void undo_srgb(std::vector<float>& colors) {
   }
 }
 
-template <mesh::MeshData (*Read)(const std::string&)>
-PyMesh read(const std::string& path) {
+template <class Read>
+PyMesh read(Read read_file) {
   mesh::MeshData data;
   {
     const nb::gil_scoped_release release;
-    data = Read(path);
+    data = read_file();
     if (data.srgb_colors) undo_srgb(data.colors);
   }
   return to_python(std::move(data));
@@ -109,18 +108,28 @@ void bind_mesh(nb::module_& module) {
       .def_ro("normals", &PyMesh::normals)
       .def_ro("uvs", &PyMesh::uvs)
       .def_ro("colors", &PyMesh::colors, "Linear red, green, blue and alpha.")
+      .def_ro("polygons", &PyMesh::polygons, "Corners of each polygon, whose fans the indices are.")
       .def_ro("materials", &PyMesh::materials, "Index into material_names of each triangle.")
       .def_ro("material_names", &PyMesh::material_names)
       .def_ro("libraries", &PyMesh::libraries, "What an OBJ file says after mtllib.")
       .def_ro("report", &PyMesh::report);
-  m.def("read_obj", &read<&mesh::read_obj>, "path"_a, "Reads a Wavefront OBJ file.");
-  m.def("read_ply", &read<&mesh::read_ply>, "path"_a, "Reads a PLY file.");
-  m.def("read_stl", &read<&mesh::read_stl>, "path"_a, "Reads an STL file.");
+  m.def(
+      "read_obj",
+      [](const std::string& path, bool polygons) { return read([&] { return mesh::read_obj(path, polygons); }); },
+      "path"_a, "polygons"_a = false, "Reads a Wavefront OBJ file; with its polygons, as a control mesh.");
+  m.def(
+      "read_ply",
+      [](const std::string& path, bool polygons) { return read([&] { return mesh::read_ply(path, polygons); }); },
+      "path"_a, "polygons"_a = false, "Reads a PLY file; with its polygons, as a control mesh.");
+  m.def(
+      "read_stl", [](const std::string& path) { return read([&] { return mesh::read_stl(path); }); }, "path"_a,
+      "Reads an STL file.");
   m.def("repair", &repair, "positions"_a, "indices"_a, "normals"_a.none(), "uvs"_a.none(), "colors"_a.none(),
         "Drops and counts what cannot be rendered.");
   m.def("smooth_normals", &smooth_normals, "positions"_a, "indices"_a, "One unit normal per vertex.");
   m.def("creased_normals", &creased_normals, "positions"_a, "indices"_a, "least_cosine"_a,
         "Old vertex of each new one, indices and normals, smooth except across edges.");
+  bind_refining(m);
 }
 
 }  // namespace accuray::bindings

@@ -34,7 +34,7 @@ constexpr TexturePoint middle = {{0.5f, 0.5f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 
 // its streams.
 template <class Fn>
 void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<float>& wavelengths, Fn&& fn) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (material >= view.root->materials.count) throw std::invalid_argument("there is no such material");
   const Tagged bsdf = view.materials[material].bsdf;
   dispatch(Bsdfs{}, bsdf.tag, [&](auto type) {
@@ -48,7 +48,7 @@ void with_bsdf(const LoadedScene& scene, uint32_t material, const std::vector<fl
 
 // Whether light is gathered from both sides of the material's surfaces.
 bool transmits(const LoadedScene& scene, uint32_t material) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (material >= view.root->materials.count) throw std::invalid_argument("there is no such material");
   return view.materials[material].transmits != 0;
 }
@@ -107,7 +107,7 @@ nb::tuple bsdf_eval(const LoadedScene& scene, uint32_t material, const std::vect
 nb::object texture_values(const LoadedScene& scene, uint32_t texture, const Rows<float, 2>& uv, const Vectors& points,
                           float footprint) {
   require_rows(uv.shape(0), points.shape(0));
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (texture >= view.root->textures.count) throw std::invalid_argument("there is no such texture");
   std::vector<float> values;
   for (size_t i = 0; i < uv.shape(0); ++i) {
@@ -123,7 +123,7 @@ nb::object texture_values(const LoadedScene& scene, uint32_t texture, const Rows
 // Diameters of what the first sample of each pixel (x, y) stands for on the surface that it meets, m; 0 where it meets
 // none.
 nb::object footprints(const LoadedScene& scene, uint32_t width, uint32_t height, const Rows<uint32_t, 2>& pixels) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   const EmbreeAccel accel(scene.accel);
   const Request request{{}, 0, 1, width, height};
   std::vector<float> diameters;
@@ -139,14 +139,14 @@ nb::object footprints(const LoadedScene& scene, uint32_t width, uint32_t height,
   return to_numpy(std::move(diameters), 0);
 }
 
-nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference,
-                      const Rows<float, 2>& u) {
-  const SceneView& view = scene.accel.view();
+nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Rows<float, 2>& u,
+                      float time) {
+  const SceneView& view = scene.view;
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   std::vector<float> wi, point, distance, pdf, scale;
   for (size_t i = 0; i < u.shape(0); ++i) {
-    const LightSample s =
-        sample_light(view, light, {reference[0], reference[1], reference[2]}, {u.data()[2 * i], u.data()[2 * i + 1]});
+    const LightSample s = sample_light(view, light, {reference[0], reference[1], reference[2]}, time,
+                                       {u.data()[2 * i], u.data()[2 * i + 1]});
     put(wi, s.wi);
     put(point, s.point);
     distance.push_back(s.distance);
@@ -163,29 +163,30 @@ nb::dict light_sample(const LoadedScene& scene, uint32_t light, std::array<float
 }
 
 // Density with which light_sample() chooses each direction; 0 where the ray does not meet the light.
-nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Vectors& wi) {
-  const SceneView& view = scene.accel.view();
+nb::object light_pdf_of(const LoadedScene& scene, uint32_t light, std::array<float, 3> reference, const Vectors& wi,
+                        float time) {
+  const SceneView& view = scene.view;
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   const EmbreeAccel accel(scene.accel);
   const Vec3 from = {reference[0], reference[1], reference[2]};
   std::vector<float> pdf;
   for (size_t i = 0; i < wi.shape(0); ++i) {
-    const Ray ray{from, row(wi, i)};
+    const Ray ray{from, row(wi, i), infinity, time};
     const Hit hit = accel.closest(ray);
     if (hit.geometry == none) {
       const bool infinite = is_infinite_light(view.lights[light].light.tag);
-      pdf.push_back(infinite ? light_pdf(view, light, from, ray.direction, Surface{}) : 0.0f);
+      pdf.push_back(infinite ? light_pdf(view, light, from, time, ray.direction, Surface{}) : 0.0f);
       continue;
     }
     const Surface surface = surface_at(view, ray, hit);
-    pdf.push_back(surface.light == light ? light_pdf(view, light, from, ray.direction, surface) : 0.0f);
+    pdf.push_back(surface.light == light ? light_pdf(view, light, from, time, ray.direction, surface) : 0.0f);
   }
   return to_numpy(std::move(pdf), 0);
 }
 
 // Flux of a light per unit of its emission; `scene_radius` counts for infinite ones.
 double light_power(const LoadedScene& scene, uint32_t light, float scene_radius) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   const Tagged record = view.lights[light].light;
   return dispatch(Lights{}, record.tag, [&](auto type) {
@@ -196,7 +197,7 @@ double light_power(const LoadedScene& scene, uint32_t light, float scene_radius)
 // Radiance (N, 4) of an infinite light at four wavelengths in each direction.
 nb::object light_radiance(const LoadedScene& scene, uint32_t light, const std::vector<float>& wavelengths,
                           const Vectors& wi) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   if (light >= view.root->lights.count) throw std::invalid_argument("there is no such light");
   std::vector<float> radiance;
   for (size_t i = 0; i < wi.shape(0); ++i) put(radiance, radiance_from(view, light, row(wi, i), carried(wavelengths)));
@@ -208,7 +209,7 @@ nb::tuple choose_lights(const LoadedScene& scene, const Vectors& points, const V
                         const Column<float>& u) {
   require_rows(points.shape(0), normals.shape(0));
   require_rows(points.shape(0), u.size());
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   std::vector<uint32_t> light;
   std::vector<float> probability;
   for (size_t i = 0; i < points.shape(0); ++i) {
@@ -222,7 +223,7 @@ nb::tuple choose_lights(const LoadedScene& scene, const Vectors& points, const V
 // The probability (N, lights) of each light at each point with its normal.
 nb::object choice_probabilities(const LoadedScene& scene, const Vectors& points, const Vectors& normals) {
   require_rows(points.shape(0), normals.shape(0));
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   const uint32_t lights = view.root->lights.count;
   std::vector<float> probability;
   for (size_t i = 0; i < points.shape(0); ++i) {
@@ -238,20 +239,21 @@ nb::list light_names(const LoadedScene& scene) {
                                    "spot",  "directional", "ies",      "environment", "sun",    "sky"};
   static_assert(Lights::size == std::size(names));
   nb::list result;
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   for (uint32_t i = 0; i < view.root->lights.count; ++i) result.append(names[view.lights[i].light.tag]);
   return result;
 }
 
-nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors& directions, bool exhaustive) {
+nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors& directions, bool exhaustive,
+                 float time) {
   require_rows(origins.shape(0), directions.shape(0));
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   const EmbreeAccel embree(scene.accel);
   const Exhaustive every{&view};
   std::vector<float> t, point, error, normal, shading;
   std::vector<uint32_t> geometry, primitive, instance;
   for (size_t i = 0; i < origins.shape(0); ++i) {
-    const Ray ray{row(origins, i), row(directions, i)};
+    const Ray ray{row(origins, i), row(directions, i), infinity, time};
     const Hit hit = exhaustive ? every.closest(ray) : embree.closest(ray);
     const Surface s = hit.geometry == none ? Surface{} : surface_at(view, ray, hit);
     t.push_back(hit.geometry == none ? infinity : hit.t);
@@ -277,21 +279,21 @@ nb::dict closest(const LoadedScene& scene, const Vectors& origins, const Vectors
 
 // From surface points (as closest() gives them), whether a ray off them to each direction leaves the scene.
 nb::object escapes(const LoadedScene& scene, const Vectors& points, const Vectors& errors, const Vectors& normals,
-                   const Vectors& directions) {
+                   const Vectors& directions, float time) {
   require_rows(points.shape(0), directions.shape(0));
   const EmbreeAccel accel(scene.accel);
   std::vector<uint8_t> result;
   for (size_t i = 0; i < points.shape(0); ++i) {
     const Vec3 d = row(directions, i);
     const Vec3 from = offset_origin(row(points, i), row(errors, i), row(normals, i), d);
-    result.push_back(accel.transmittance({from, d}) > 0.0f ? 1 : 0);
+    result.push_back(accel.transmittance({from, d, infinity, time}) > 0.0f ? 1 : 0);
   }
   return to_numpy(std::move(result), 0);
 }
 
 // Offsets from the pixel's centre for numbers u, on one axis.
 nb::object filter_sample(const LoadedScene& scene, const Column<float>& u) {
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   std::vector<float> offsets;
   dispatch(Filters{}, view.root->filter.tag, [&](auto type) {
     const auto& filter = view.as<typename decltype(type)::type>(view.root->filter);
@@ -302,9 +304,9 @@ nb::object filter_sample(const LoadedScene& scene, const Column<float>& u) {
 }
 
 // Rays of the scene's camera: for points of the film, (0, 0) to (1, 1), and of the lens's unit square.
-nb::dict camera_ray(const LoadedScene& scene, const Rows<float, 2>& film, const Rows<float, 2>& lens) {
+nb::dict camera_ray(const LoadedScene& scene, const Rows<float, 2>& film, const Rows<float, 2>& lens, float time) {
   require_rows(film.shape(0), lens.shape(0));
-  const SceneView& view = scene.accel.view();
+  const SceneView& view = scene.view;
   std::vector<float> origins, directions;
   std::vector<uint8_t> seen;
   dispatch(Cameras{}, view.root->camera.tag, [&](auto type) {
@@ -312,9 +314,11 @@ nb::dict camera_ray(const LoadedScene& scene, const Rows<float, 2>& film, const 
     for (size_t i = 0; i < film.shape(0); ++i) {
       const float* f = film.data() + 2 * i;
       const float* l = lens.data() + 2 * i;
-      const CameraRay r = camera.ray({f[0], f[1]}, {l[0], l[1]}, 0.0f);
-      put(origins, r.ray.origin);
-      put(directions, r.ray.direction);
+      const CameraRay r = camera.ray({f[0], f[1]}, {l[0], l[1]}, time);
+      const uint32_t motion = view.root->camera_motion;
+      const Ray ray = motion == none ? r.ray : carried_by(view, motion, r.ray);
+      put(origins, ray.origin);
+      put(directions, ray.direction);
       seen.push_back(r.seen ? 1 : 0);
     }
     return true;
@@ -384,17 +388,17 @@ void bind_probe(nb::module_& module) {
   probe.def("sheen_albedo", &sheen_albedo, "cosine"_a, "roughness"_a);
   probe.def("texture_values", &texture_values, "scene"_a, "texture"_a, "uv"_a, "points"_a, "footprint"_a = 0.0f);
   probe.def("footprints", &footprints, "scene"_a, "width"_a, "height"_a, "pixels"_a);
-  probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a);
-  probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a);
+  probe.def("light_sample", &light_sample, "scene"_a, "light"_a, "reference"_a, "u"_a, "time"_a = 0.0f);
+  probe.def("light_pdf", &light_pdf_of, "scene"_a, "light"_a, "reference"_a, "wi"_a, "time"_a = 0.0f);
   probe.def("light_power", &light_power, "scene"_a, "light"_a, "scene_radius"_a);
   probe.def("light_radiance", &light_radiance, "scene"_a, "light"_a, "wavelengths"_a, "wi"_a);
   probe.def("choose_lights", &choose_lights, "scene"_a, "points"_a, "normals"_a, "u"_a);
   probe.def("choice_probabilities", &choice_probabilities, "scene"_a, "points"_a, "normals"_a);
   probe.def("light_names", &light_names, "scene"_a);
-  probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false);
-  probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a);
+  probe.def("closest", &closest, "scene"_a, "origins"_a, "directions"_a, "exhaustive"_a = false, "time"_a = 0.0f);
+  probe.def("escapes", &escapes, "scene"_a, "points"_a, "errors"_a, "normals"_a, "directions"_a, "time"_a = 0.0f);
   probe.def("filter_sample", &filter_sample, "scene"_a, "u"_a);
-  probe.def("camera_ray", &camera_ray, "scene"_a, "film"_a, "lens"_a);
+  probe.def("camera_ray", &camera_ray, "scene"_a, "film"_a, "lens"_a, "time"_a = 0.0f);
   probe.def("sampler_points", &sampler_points, "key"_a, "set"_a, "first"_a, "count"_a);
   probe.def("quantized_sums", &quantized_sums, "value"_a, "step"_a, "key"_a, "count"_a);
   probe.def("function", &functions, "name"_a, "x"_a, "An elementary function of kernels/math at each x.");

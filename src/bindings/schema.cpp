@@ -16,7 +16,7 @@ namespace accuray::bindings {
 namespace {
 
 // Changes whenever a change of the code changes what a sample computes; part of a scene's identity.
-constexpr int kSamplingVersion = 3;
+constexpr int kSamplingVersion = 4;
 
 const char* kind_name(Kind kind) {
   constexpr const char* names[] = {"bool", "int",       "float", "vec",       "enum",     "text",

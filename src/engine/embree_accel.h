@@ -2,10 +2,12 @@
 // Scenes of a few dozen triangles are tested without it: see packed_accel.h.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/embree_shim.h"
@@ -18,6 +20,28 @@ struct EmbreeError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Embree itself, and how much memory its structures take. Scenes that share parts share it.
+struct EmbreeDevice {
+  EmbreeDevice();
+  ~EmbreeDevice();
+  EmbreeDevice(const EmbreeDevice&) = delete;
+  EmbreeDevice& operator=(const EmbreeDevice&) = delete;
+
+  RTCDevice handle;
+  size_t bytes = 0;
+};
+
+// The structure over what instances show.
+struct EmbreePrototype {
+  EmbreePrototype(std::shared_ptr<EmbreeDevice> owner, RTCScene made) : device(std::move(owner)), scene(made) {}
+  ~EmbreePrototype() { rtcReleaseScene(scene); }
+  EmbreePrototype(const EmbreePrototype&) = delete;
+  EmbreePrototype& operator=(const EmbreePrototype&) = delete;
+
+  std::shared_ptr<EmbreeDevice> device;
+  RTCScene scene;
+};
+
 // Owns Embree's structures for one scene. The view's sections must outlive it.
 //
 // The build must not depend on the number of threads: where two triangles are met at the same distance, their order in
@@ -25,7 +49,8 @@ struct EmbreeError : std::runtime_error {
 // builds with one thread.
 class EmbreeScene {
  public:
-  explicit EmbreeScene(const SceneView& view);
+  // `before`: an earlier frame, whose prototypes are used where their meshes lie in the same sections.
+  explicit EmbreeScene(const SceneView& view, const EmbreeScene* before = nullptr);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -35,7 +60,8 @@ class EmbreeScene {
   const PackedScene* packed() const { return packed_.get(); }
   uint32_t first_instance() const { return first_instance_; }
   const SceneView& view() const { return view_; }
-  size_t bytes() const { return bytes_; }
+  size_t bytes() const { return device_ == nullptr ? 0 : device_->bytes; }
+  uint32_t built_prototypes() const { return built_prototypes_; }
 
   // What a user geometry's callback finds behind its pointer.
   struct Analytic {
@@ -46,19 +72,24 @@ class EmbreeScene {
  private:
   RTCGeometry make_geometry(uint32_t number);
   void attach(RTCScene target, uint32_t number, uint32_t id);
-  RTCScene prototype_scene(uint32_t first, uint32_t count);
-  void attach_instances();
+  // Where the arrays of some meshes lie; empty if one of them is no mesh.
+  using Place = std::vector<std::pair<const void*, uint64_t>>;
+  Place place_of(uint32_t first, uint32_t count) const;
+  RTCScene prototype_scene(uint32_t first, uint32_t count, const EmbreeScene* before);
+  void place(RTCGeometry instance, const InstanceRecord& record) const;
+  void attach_instances(const EmbreeScene* before);
   void commit(RTCScene target);
   void check(const char* action);
 
   SceneView view_;
-  RTCDevice device_ = nullptr;
+  std::shared_ptr<EmbreeDevice> device_;
   RTCScene scene_ = nullptr;
-  std::vector<RTCScene> prototypes_;
+  std::vector<std::shared_ptr<EmbreePrototype>> prototypes_;
+  std::map<Place, std::shared_ptr<EmbreePrototype>> placed_;
+  uint32_t built_prototypes_ = 0;
   std::vector<std::unique_ptr<Analytic>> analytic_;
   std::unique_ptr<PackedScene> packed_;
   uint32_t first_instance_;
-  size_t bytes_ = 0;
 };
 
 // What kernels see; one for each thread, because it counts.

@@ -23,7 +23,9 @@ bool PackedScene::suits(const SceneView& view) {
   for (uint32_t g = 0; g < view.root->top_geometries; ++g) {
     const GeometryRecord& geometry = view.geometries[g];
     if (is_mesh(geometry)) {
-      triangles += view.as<Mesh>(geometry.shape).indices.count / 3;
+      const Mesh& mesh = view.as<Mesh>(geometry.shape);
+      if (mesh.segments != 0) return false;
+      triangles += mesh.indices.count / 3;
     } else {
       ++analytic;
     }
@@ -45,7 +47,7 @@ PackedScene::PackedScene(const SceneView& view) : view_(view) {
         groups_.push_back({});
         lane = 0;
       }
-      const Triangle tri = triangle_of(view, mesh, p);
+      const Triangle tri = triangle_of(view, mesh, p, 0.0f);
       Group& group = groups_.back();
       put(group.p0, lane, tri.p0);
       put(group.p1, lane, tri.p1);

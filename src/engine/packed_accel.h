@@ -15,7 +15,7 @@ namespace accuray {
 
 class PackedScene {
  public:
-  // Scenes beyond these bounds, or with instances, are Embree's.
+  // Scenes beyond these bounds, or with instances or meshes that deform, are Embree's.
   static constexpr uint32_t most_triangles = 64;
   static constexpr uint32_t most_analytic = 4;
 

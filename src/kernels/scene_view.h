@@ -12,7 +12,7 @@
 
 namespace accuray {
 
-constexpr uint32_t block_version = 5;
+constexpr uint32_t block_version = 6;
 constexpr uint32_t lambda_guide_size = 512;
 
 template <class T>
@@ -70,16 +70,25 @@ struct GeometryRecord {
 // A copy of the geometries [first, first + count) under a transform.
 struct InstanceRecord {
   Transform to_world;
-  Transform to_object;
   uint32_t first, count;
   uint32_t lights;    // first entry in lights_of_instance, one per geometry; none: nothing emits
   uint32_t material;  // overrides the prototypes' material; none: does not
+  uint32_t motion;    // index in SceneView::motions, and the transforms are those of its first key; none: it is still
 };
+
+// Keys [first, first + count) of SceneView::motion_keys; see geometry/motion.h.
+struct MotionRecord {
+  uint32_t first;
+  uint32_t count;  // 2 or more
+};
+
+static_assert(sizeof(InstanceRecord) == 64);  // there may be millions
 
 struct LightRecord {
   Tagged light;
   SpectrumRef emission;
   uint32_t both_sides;
+  uint32_t motion;  // of its instance, in whose prototype's space the light is; none: it is still, in the world
 };
 
 // A light beyond everything that a ray which leaves the scene meets.
@@ -118,12 +127,17 @@ struct Root {
   uint32_t any_opacity;     // some material lets rays through
   uint32_t top_geometries;  // geometries [0, top_geometries) are in the scene itself, the others only instanced
   float film_step;
+  uint32_t compact;     // the acceleration structure is to be small rather than fast
   uint32_t any_mipmap;  // some texture asks how much of it a ray stands for
+  uint32_t camera_motion;  // index in SceneView::motions; none: the camera is still
   Tagged camera, filter, integrator;
   Slice<MaterialRecord> materials;
   Slice<InteriorRecord> interiors;
   Slice<GeometryRecord> geometries;
   Slice<InstanceRecord> instances;
+  Slice<MotionRecord> motions;
+  Slice<Transform> motion_keys;
+  Slice<float> shutter;  // see film/shutter.h
   Slice<LightRecord> lights;
   Slice<LightPlace> light_places;  // of every light; empty if no emission is textured
   Slice<InfiniteRecord> infinite_lights;
@@ -150,6 +164,9 @@ struct SceneView {
   const InteriorRecord* interiors;
   const GeometryRecord* geometries;
   const InstanceRecord* instances;
+  const MotionRecord* motions;
+  const Transform* motion_keys;
+  const float* shutter;
   const LightRecord* lights;
   const LightPlace* light_places;
   const InfiniteRecord* infinite_lights;
@@ -187,6 +204,9 @@ struct SceneView {
     view.interiors = view.at(root.interiors);
     view.geometries = view.at(root.geometries);
     view.instances = view.at(root.instances);
+    view.motions = view.at(root.motions);
+    view.motion_keys = view.at(root.motion_keys);
+    view.shutter = view.at(root.shutter);
     view.lights = view.at(root.lights);
     view.light_places = view.at(root.light_places);
     view.infinite_lights = view.at(root.infinite_lights);

@@ -7,6 +7,7 @@
 #include "kernels/bsdf/list.h"
 #include "kernels/texture/opacity.h"
 #include "lower/emission.h"
+#include "lower/solids.h"
 
 namespace accuray {
 
@@ -27,48 +28,15 @@ Disk moved(const Matrix& m, Disk d) {
 SphereLight light_of(const Sphere& s) { return {s.center, s.radius}; }
 DiskLight light_of(const Disk& d) { return {d.center, d.normal, d.radius}; }
 
-// A rectangle as the two triangles that it is rendered by.
-MeshArrays rectangle_mesh(const Values& values) {
-  const auto c = vec_of(values, "corner");
-  const auto u = vec_of(values, "edge_u");
-  const auto v = vec_of(values, "edge_v");
-  // The sine of their angle, squared.
-  const Vec3 x = to_vec3(u);
-  const Vec3 y = to_vec3(v);
-  const float sine2 = length_squared(cross(x, y)) / (length_squared(x) * length_squared(y));
-  if (!(sine2 > 1e-12f))
-    throw std::invalid_argument("edge_u and edge_v span no area: they must not be zero or parallel");
-  MeshArrays mesh;
-  for (const auto& [s, t] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
-    for (size_t k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(c[k] + s * u[k] + t * v[k]));
-    mesh.uvs.push_back(static_cast<float>(s));
-    mesh.uvs.push_back(static_cast<float>(t));
-  }
-  mesh.indices = {0, 1, 2, 0, 2, 3};
-  return mesh;
-}
-
-// Applies a transform to a mesh; mirroring turns the winding around so that the front side stays the front side.
-void move_mesh(const Matrix& m, MeshArrays& mesh) {
-  transform_array<true>(m, mesh.positions);
-  if (is_similarity(m)) {
-    transform_array<false>(m, mesh.normals);
-  } else {
-    transform_normals(m, mesh.normals);
-  }
-  if (determinant(m) < 0.0) {
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-  }
-}
-
 }  // namespace
 
 SceneBuilder::SceneBuilder(ColourData colour)
     : spectra_(std::move(colour)),
       textures_(pool_, spectra_, bulk_),
       environments_(textures_, bulk_),
-      lights_(pool_, spectra_) {
+      lights_(pool_, spectra_, motions_) {
   root_.version = block_version;
+  root_.camera_motion = none;
   root_.film_step = 0x1p-24f;
 }
 
@@ -206,46 +174,44 @@ uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t li
   return number;
 }
 
-uint32_t SceneBuilder::add_mesh_lights(const MeshArrays& arrays, const MaterialRecord& material, LightPlace place) {
+uint32_t SceneBuilder::add_mesh_lights(std::span<const float> positions, std::span<const uint32_t> indices,
+                                       const MaterialRecord& material, LightPlace place, uint32_t motion) {
   if (material.emission.index == none) return none;
   const auto first = static_cast<uint32_t>(light_of_primitive_.size());
   const auto lights =
-      lights_.add_mesh(arrays.positions, arrays.indices, material.emission, material.emits_both_sides != 0, place);
+      lights_.add_mesh(positions, indices, material.emission, material.emits_both_sides != 0, place, motion);
   light_of_primitive_.insert(light_of_primitive_.end(), lights.begin(), lights.end());
   return first;
 }
 
 template <class L>
-uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& material, LightPlace place) {
+uint32_t SceneBuilder::add_surface_light(const L& light, const MaterialRecord& material, LightPlace place,
+                                         uint32_t motion) {
   if (material.emission.index == none) return none;
-  light_of_primitive_.push_back(lights_.add(light, material.emission, material.emits_both_sides != 0, place));
+  light_of_primitive_.push_back(
+      lights_.add(light, material.emission, material.emits_both_sides != 0, place, {}, motion));
   return static_cast<uint32_t>(light_of_primitive_.size() - 1);
 }
 
 template <class T>
-Slice<T> SceneBuilder::store(std::vector<T> values) {
-  if (values.empty()) return {};
-  const Slice<T> slice{0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(values.size())};
-  bulk_.push_back(section_of(std::move(values)));
-  return slice;
+Slice<T> SceneBuilder::store(const Section& section) {
+  if (section.size == 0) return {};
+  bulk_.push_back(section);
+  return {0, static_cast<uint32_t>(bulk_.size()), static_cast<uint32_t>(section.size / sizeof(T))};
 }
 
-uint32_t SceneBuilder::add_mesh(MeshArrays arrays, const std::optional<Matrix>& transform, uint32_t material,
-                                bool prototype) {
-  if (transform) move_mesh(*transform, arrays);
-  Bounds bounds;
-  for (size_t i = 0; i + 2 < arrays.positions.size(); i += 3) {
-    bounds.grow(Vec3{arrays.positions[i], arrays.positions[i + 1], arrays.positions[i + 2]});
-  }
+uint32_t SceneBuilder::add_mesh(const PlacedMesh& placed, uint32_t material, bool prototype) {
   const LightPlace place = {static_cast<uint32_t>(geometries_.size()), none, 0};
-  const uint32_t lights = prototype ? none : add_mesh_lights(arrays, materials_.at(material), place);
-  Mesh mesh{};
-  mesh.positions = store(std::move(arrays.positions));
-  mesh.indices = store(std::move(arrays.indices));
-  mesh.normals = store(std::move(arrays.normals));
-  mesh.uvs = store(std::move(arrays.uvs));
-  mesh.colors = store(std::move(arrays.colors));
-  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, bounds, prototype);
+  const MaterialRecord& shown = materials_.at(material);
+  uint32_t lights = none;
+  if (!prototype && shown.emission.index != none) {
+    lights = add_mesh_lights(positions_of(placed.layout, placed.vertices.data), placed.index_values(), shown, place);
+  }
+  Mesh mesh = placed.layout;
+  mesh.vertices = store<float>(placed.vertices);
+  mesh.indices = store<uint32_t>(placed.indices);
+  mesh.colors = store<float>(placed.colors);
+  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, placed.bounds, prototype);
 }
 
 template <class Shape>
@@ -262,7 +228,11 @@ uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, co
   const Matrix matrix = transform.value_or(identity_matrix);
   if (type == Sphere::name) return add_analytic(moved(matrix, struct_of<Sphere>(values)), material, prototype);
   if (type == Disk::name) return add_analytic(moved(matrix, struct_of<Disk>(values)), material, prototype);
-  if (type == Rectangle::name) return add_mesh(rectangle_mesh(values), transform, material, prototype);
+  if (type == Rectangle::name) {
+    mesh::MeshData mesh = rectangle_mesh(values);
+    MeshArrays arrays{std::move(mesh.positions), std::move(mesh.indices), {}, std::move(mesh.uvs), {}};
+    return add_mesh(place_mesh(std::move(arrays), transform), material, prototype);
+  }
   throw std::invalid_argument("'" + std::string(type) + "' is no shape of this kind");
 }
 
@@ -276,21 +246,52 @@ void SceneBuilder::add_instance(uint32_t first, uint32_t count, const std::optio
       throw std::invalid_argument("transform moves or scales by more than 1e15 or less than 1e-15");
     }
   }
-  InstanceRecord instance{to_transform(matrix),   to_transform(inverse(matrix)), first, count, none,
-                          material.value_or(none)};
-  instance.lights = instance_lights(matrix, instance, material);
+  if (instances_.size() >= none - size_t{root_.top_geometries}) throw std::invalid_argument("are too many instances");
+  InstanceRecord instance{to_transform(matrix), first, count, none, material.value_or(none), none};
+  instance.lights = instance_lights(matrix, instance);
   instances_.push_back(instance);
 }
 
-uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecord& instance,
+void SceneBuilder::add_moving_instance(uint32_t first, uint32_t count, std::span<const Matrix> keys,
                                        std::optional<uint32_t> material) {
+  InstanceRecord instance{to_transform(keys.front()), first, count, none, material.value_or(none), motions_.add(keys)};
+  instance.lights = instance_lights(identity_matrix, instance);
+  instances_.push_back(instance);
+}
+
+void SceneBuilder::add_instances(uint32_t first, uint32_t count, std::span<const Matrix> transforms,
+                                 std::optional<uint32_t> material) {
+  for (const Matrix& transform : transforms) add_instance(first, count, transform, material);
+}
+
+uint32_t SceneBuilder::repeat_geometry(uint32_t geometry) {
+  const GeometryRecord record = geometries_.at(geometry);
+  const Bounds bounds = bounds_.at(geometry);
+  return add_geometry(record.shape, record.material, none, bounds, true);
+}
+
+uint64_t SceneBuilder::most_lights(uint32_t first, uint32_t count, std::optional<uint32_t> material) const {
+  uint64_t sum = 0;
+  for (uint32_t g = first; g < first + count; ++g) {
+    const GeometryRecord& geometry = geometries_.at(g);
+    if (materials_.at(material.value_or(geometry.material)).emission.index == none) continue;
+    const bool is_mesh = geometry.shape.tag == tag_of<Mesh>(Shapes{});
+    const auto* mesh = reinterpret_cast<const Mesh*>(pool_.words().data() + geometry.shape.offset);
+    sum += is_mesh ? mesh->indices.count / 3 : 1;
+  }
+  return sum;
+}
+
+uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecord& instance) {
   const auto first = static_cast<uint32_t>(lights_of_instance_.size());
   bool any = false;
   for (uint32_t g = instance.first; g < instance.first + instance.count; ++g) {
     const GeometryRecord& geometry = geometries_.at(g);
-    scene_bounds_.grow(bounds_.at(g).moved(matrix));
-    const uint32_t lights = copied_lights(matrix, materials_.at(material.value_or(geometry.material)),
-                                          {g, static_cast<uint32_t>(instances_.size()), 0});
+    const bool moves = instance.motion != none;
+    scene_bounds_.grow(moves ? motions_.swept(instance.motion, bounds_.at(g)) : bounds_.at(g).moved(matrix));
+    const uint32_t material = instance.material == none ? geometry.material : instance.material;
+    const LightPlace place = {g, static_cast<uint32_t>(instances_.size()), 0};
+    const uint32_t lights = copied_lights(matrix, materials_.at(material), place, instance.motion);
     any = any || lights != none;
     lights_of_instance_.push_back(lights);
   }
@@ -299,24 +300,26 @@ uint32_t SceneBuilder::instance_lights(const Matrix& matrix, const InstanceRecor
   return none;
 }
 
-uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place) {
+uint32_t SceneBuilder::copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place,
+                                     uint32_t motion) {
   if (material.emission.index == none) return none;
   const GeometryRecord& geometry = geometries_.at(place.geometry);
   const uint32_t* parameters = pool_.words().data() + geometry.shape.offset;
   if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
-    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Sphere*>(parameters))), material, place);
+    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Sphere*>(parameters))), material, place,
+                             motion);
   }
   if (geometry.shape.tag == tag_of<Disk>(Shapes{})) {
-    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Disk*>(parameters))), material, place);
+    return add_surface_light(light_of(moved(matrix, *reinterpret_cast<const Disk*>(parameters))), material, place,
+                             motion);
   }
   const Mesh& mesh = *reinterpret_cast<const Mesh*>(parameters);
-  const auto* positions = reinterpret_cast<const float*>(bulk_.at(mesh.positions.section - 1).data);
   const auto* indices = reinterpret_cast<const uint32_t*>(bulk_.at(mesh.indices.section - 1).data);
   MeshArrays world;
-  world.positions.assign(positions, positions + mesh.positions.count);
+  world.positions = positions_of(mesh, bulk_.at(mesh.vertices.section - 1).data);
   world.indices.assign(indices, indices + mesh.indices.count);
   move_mesh(matrix, world);
-  return add_mesh_lights(world, material, place);
+  return add_mesh_lights(world.positions, world.indices, material, place, motion);
 }
 
 void SceneBuilder::add_light(std::string_view type, const Values& values, SpectrumRef emission,
@@ -331,6 +334,22 @@ void SceneBuilder::add_light(std::string_view type, const Values& values, Spectr
 
 void SceneBuilder::set_camera(std::string_view type, const Values& values, const FilmSize& film) {
   root_.camera = lower_camera(type, values, film, pool_);
+}
+
+void SceneBuilder::set_camera_motion(std::span<const Matrix> keys) { root_.camera_motion = motions_.add(keys); }
+
+void SceneBuilder::set_shutter(std::span<const double> times, std::span<const double> transmissions) {
+  if (times.size() < 2 || times.size() != transmissions.size()) {
+    throw std::invalid_argument("a shutter has two nodes or more, each with a time and a transmission");
+  }
+  std::vector<double> sums{0.0};
+  for (size_t i = 1; i < times.size(); ++i) {
+    sums.push_back(sums.back() + 0.5 * (times[i] - times[i - 1]) * (transmissions[i] + transmissions[i - 1]));
+  }
+  shutter_.clear();
+  for (const double time : times) shutter_.push_back(static_cast<float>(time));
+  for (const double sum : sums) shutter_.push_back(static_cast<float>(sum / sums.back()));
+  for (const double open : transmissions) shutter_.push_back(static_cast<float>(open / sums.back()));
 }
 
 void SceneBuilder::set_filter(std::string_view type, const Values& values) {
@@ -367,6 +386,8 @@ SceneView SceneBuilder::draft(const std::vector<const uint8_t*>& sections) const
   view.sections = sections.data();
   view.geometries = geometries_.data();
   view.instances = instances_.data();
+  view.motions = motions_.records().data();
+  view.motion_keys = motions_.keys().data();
   view.lights = lights_.records().data();
   view.light_places = lights_.places().data();
   view.spectra = spectra_.records().data();
@@ -374,6 +395,23 @@ SceneView SceneBuilder::draft(const std::vector<const uint8_t*>& sections) const
   view.textures = textures_.records().data();
   view.parameters = pool_.words().data();
   return view;
+}
+
+std::vector<float> SceneBuilder::texture_values(uint32_t texture, std::span<const float> uvs,
+                                                std::span<const float> points) const {
+  if (texture >= textures_.records().size()) throw std::invalid_argument("there is no such texture");
+  const std::vector<const uint8_t*> sections = section_bases();
+  const SceneView view = draft(sections);
+  std::vector<float> values;
+  values.reserve(points.size());
+  for (size_t i = 0; i + 2 < points.size(); i += 3) {
+    TexturePoint at{};
+    if (!uvs.empty()) at.uv = {uvs[2 * (i / 3)], uvs[2 * (i / 3) + 1]};
+    at.point = {points[i], points[i + 1], points[i + 2]};
+    const TextureValue value = texture_value(view, texture, at);
+    values.insert(values.end(), {value[0], value[1], value[2]});
+  }
+  return values;
 }
 
 Block SceneBuilder::finish() {
@@ -390,15 +428,18 @@ Block SceneBuilder::finish() {
     for (uint32_t c = 0; c < 3; ++c) response[4 * i + c] = static_cast<float>(cmf[3 * i + c] / y_sum);
   }
   if (spectra_.any_textured()) {
-    root_.rgb_nodes = store(spectra_.rgb_nodes());
-    root_.rgb_coefficients = store(spectra_.rgb_table());
+    root_.rgb_nodes = store<float>(section_of(spectra_.rgb_nodes()));
+    root_.rgb_coefficients = store<float>(section_of(spectra_.rgb_table()));
   }
   root_.any_mipmap = textures_.any_mipmap() ? 1u : 0u;
+  root_.instances = store<InstanceRecord>(section_of(std::move(instances_)));
   RootWriter writer;
   root_.materials = writer.append(materials_);
   root_.interiors = writer.append(interiors_);
   root_.geometries = writer.append(geometries_);
-  root_.instances = writer.append(instances_);
+  root_.motions = writer.append(motions_.records());
+  root_.motion_keys = writer.append(motions_.keys());
+  root_.shutter = writer.append(shutter_);
   root_.lights = writer.append(lights_.records());
   if (lights_.any_textured()) root_.light_places = writer.append(lights_.places());
   for (InfiniteRecord& infinite : infinite_) infinite.hidden |= hide_infinite_ ? 1u : 0u;

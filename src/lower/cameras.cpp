@@ -187,4 +187,19 @@ Tagged lower_camera(std::string_view type, const Values& values, const FilmSize&
                   [&](auto named) { return camera_of(named, values, film, pool); });
 }
 
+std::optional<Block> with_camera(const Block& block, std::string_view type, const Values& values,
+                                 const FilmSize& film) {
+  ParameterPool pool;
+  const Tagged camera = lower_camera(type, values, film, pool);
+  const Root& root = *block.view().root;
+  if (root.camera.tag != camera.tag || root.camera_motion != none) return std::nullopt;
+  std::vector<Section> sections = block.sections();
+  std::vector<uint8_t> bytes(sections[0].data, sections[0].data + sections[0].size);
+  const size_t words = pool.words().size() - camera.offset;
+  std::memcpy(bytes.data() + root.parameters.offset + root.camera.offset * sizeof(uint32_t),
+              pool.words().data() + camera.offset, words * sizeof(uint32_t));
+  sections[0] = section_of(std::move(bytes));
+  return Block(std::move(sections));
+}
+
 }  // namespace accuray

@@ -28,11 +28,9 @@ void append_sums(std::span<const double> weights, std::vector<float>& sums) {
   if (total > 0.0) sums.back() = 1.0f;
 }
 
-template <class T>
-Slice<T> stored(std::vector<T> values, std::vector<Section>& bulk) {
-  const Slice<T> slice{0, static_cast<uint32_t>(bulk.size() + 1), static_cast<uint32_t>(values.size())};
-  bulk.push_back(section_of(std::move(values)));
-  return slice;
+Slice<float> stored(const Section& section, std::vector<Section>& bulk) {
+  bulk.push_back(section);
+  return {0, static_cast<uint32_t>(bulk.size()), static_cast<uint32_t>(section.size / sizeof(float))};
 }
 
 }  // namespace
@@ -56,6 +54,14 @@ double mean_of(const RadianceCells& cells) {
 }
 
 DirectionTable make_direction_table(const RadianceCells& cells, std::vector<Section>& bulk) {
+  return place(direction_sections(cells), bulk);
+}
+
+DirectionTable place(const DirectionSections& made, std::vector<Section>& bulk) {
+  return {stored(made.rows, bulk), stored(made.columns, bulk), made.width, made.height};
+}
+
+DirectionSections direction_sections(const RadianceCells& cells) {
   std::vector<float> rows;
   std::vector<float> columns;
   columns.reserve(static_cast<size_t>(cells.width + 1) * cells.height);
@@ -71,7 +77,7 @@ DirectionTable make_direction_table(const RadianceCells& cells, std::vector<Sect
     of_rows.push_back(sum * cell_solid_angle(cells.width, cells.height, row));
   }
   append_sums(of_rows, rows);
-  return {stored(std::move(rows), bulk), stored(std::move(columns), bulk), cells.width, cells.height};
+  return {section_of(std::move(rows)), section_of(std::move(columns)), cells.width, cells.height};
 }
 
 }  // namespace accuray

@@ -24,4 +24,12 @@ double mean_of(const RadianceCells& cells);
 // the mean probability besides: the running sums, of single precision, would lose them beside a sun.
 DirectionTable make_direction_table(const RadianceCells& cells, std::vector<Section>& bulk);
 
+// The same in two steps: the sections, which many scenes may hold, and their place in one scene.
+struct DirectionSections {
+  Section rows, columns;
+  uint32_t width = 0, height = 0;
+};
+DirectionSections direction_sections(const RadianceCells& cells);
+DirectionTable place(const DirectionSections& made, std::vector<Section>& bulk);
+
 }  // namespace accuray

@@ -32,8 +32,9 @@ double mean_over(const SceneView& scene, uint32_t light, uint32_t texture, uint3
       for (uint32_t i = 0; i < count; ++i) {
         const Vec2 u = {(static_cast<float>(i) + 0.5f) / static_cast<float>(count),
                         static_cast<float>(reverse_bits(i) >> 8) * 0x1p-24f};
-        const Vec3 point = scene.as<L>(record.light).at(u);
-        sum += brightness(texture_value(scene, texture, point_on_light(scene, light, point)));
+        Vec3 point = scene.as<L>(record.light).at(u);
+        if (record.motion != none) point = transform_at(moment_of(scene, record.motion, 0.0f)).point(point);
+        sum += brightness(texture_value(scene, texture, point_on_light(scene, light, point, 0.0f)));
       }
     }
     return sum / count;

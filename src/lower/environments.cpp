@@ -122,8 +122,13 @@ const EnvironmentMap& EnvironmentPool::map_of(const PictureUse& use) {
   const auto found = maps_.find(key);
   if (found != maps_.end()) return found->second;
   const uint32_t texture = textures_.add(ImageTexture::name, image_values(), use);
-  const RadianceCells cells = luminance_cells(textures_.picture(use), textures_.decoding(use));
-  return maps_.emplace(key, EnvironmentMap{texture, make_direction_table(cells, bulk_), mean_of(cells)}).first->second;
+  auto& made = textures_.shared(use).radiance;
+  if (!made.contains(use.srgb)) {
+    const RadianceCells cells = luminance_cells(textures_.picture(use), textures_.decoding(use));
+    made[use.srgb] = {direction_sections(cells), mean_of(cells)};
+  }
+  const RadianceMap& radiance = made[use.srgb];
+  return maps_.emplace(key, EnvironmentMap{texture, place(radiance.directions, bulk_), radiance.mean}).first->second;
 }
 
 }  // namespace accuray

@@ -58,7 +58,7 @@ std::optional<QuadLight> rectangle_of(std::span<const float> positions, const ui
 }  // namespace
 
 std::vector<uint32_t> LightTable::add_mesh(std::span<const float> positions, std::span<const uint32_t> indices,
-                                           SpectrumRef emission, bool both_sides, LightPlace place) {
+                                           SpectrumRef emission, bool both_sides, LightPlace place, uint32_t motion) {
   const size_t triangles = indices.size() / 3;
   std::vector<uint32_t> light_of(triangles);
   for (size_t t = 0; t < triangles; ++t) {
@@ -69,14 +69,14 @@ std::vector<uint32_t> LightTable::add_mesh(std::span<const float> positions, std
     const Vec3 c = vertex(positions, i[2]);
     if (t + 1 < triangles) {
       if (const std::optional<QuadLight> quad = rectangle_of(positions, i)) {
-        light_of[t] = light_of[t + 1] = add(*quad, emission, both_sides, place);
+        light_of[t] = light_of[t + 1] = add(*quad, emission, both_sides, place, {}, motion);
         ++t;
         continue;
       }
     }
     const Vec3 normal = cross(b - a, c - a);
     const TriangleLight light{a, b, c, normalize(normal), triangle_error({a, b, c, 0, 0, 0}), 0.5f * length(normal)};
-    light_of[t] = add(light, emission, both_sides, place);
+    light_of[t] = add(light, emission, both_sides, place, {}, motion);
   }
   return light_of;
 }
@@ -96,7 +96,8 @@ auto LightTable::with_light(const LightRecord& record, Fn&& fn) const {
 
 double LightTable::power_factor(const LightRecord& record, float scene_radius) const {
   const float factor = with_light(record, [&](const auto& light) { return light.power_per_radiance(scene_radius); });
-  return static_cast<double>(factor) * (record.both_sides != 0 ? 2.0 : 1.0);
+  const double size = record.motion == none ? 1.0 : motions_.area_factor(record.motion);
+  return static_cast<double>(factor) * size * (record.both_sides != 0 ? 2.0 : 1.0);
 }
 
 std::vector<double> LightTable::weights(float scene_radius) const {
@@ -146,7 +147,9 @@ LightTree LightTable::tree(float scene_radius) const {
         const double radius = scene_radius;
         distant.push_back({i, power[i] / (4.0 * static_cast<double>(pi) * radius * radius)});
       } else {
-        near.push_back({i, light.bounds(), power[i], records_[i].both_sides != 0});
+        const uint32_t motion = records_[i].motion;
+        const LightBounds bounds = motion == none ? light.bounds() : motions_.swept(motion, light.bounds());
+        near.push_back({i, bounds, power[i], records_[i].both_sides != 0});
       }
       return true;
     });

@@ -6,6 +6,7 @@
 
 #include "kernels/light/list.h"
 #include "lower/light_tree.h"
+#include "lower/motion.h"
 #include "lower/parameters.h"
 #include "lower/spectra.h"
 
@@ -13,20 +14,22 @@ namespace accuray {
 
 class LightTable {
  public:
-  LightTable(ParameterPool& pool, const SpectrumPool& spectra) : pool_(pool), spectra_(spectra) {}
+  LightTable(ParameterPool& pool, const SpectrumPool& spectra, const MotionPool& motions)
+      : pool_(pool), spectra_(spectra), motions_(motions) {}
 
-  // `place`: of a light that is a surface. `table`: numbers that lie behind the light in the pool.
+  // `place`: of a light that is a surface. `table`: numbers that lie behind the light in the pool. `motion`: of its
+  // instance, in whose prototype's space the light then is.
   template <class L>
   uint32_t add(const L& light, SpectrumRef emission, bool both_sides, LightPlace place = {none, none, 0},
-               std::span<const float> table = {}) {
-    records_.push_back({{tag_of<L>(Lights{}), pool_.add(light, table)}, emission, both_sides ? 1u : 0u});
+               std::span<const float> table = {}, uint32_t motion = none) {
+    records_.push_back({{tag_of<L>(Lights{}), pool_.add(light, table)}, emission, both_sides ? 1u : 0u, motion});
     places_.push_back(place);
     return static_cast<uint32_t>(records_.size() - 1);
   }
-  // Adds the lights of an emissive mesh, in world space, and returns the light of each triangle. Neighbouring triangles
-  // that form a rectangle become one light.
+  // Adds the lights of an emissive mesh, in the same space, and returns the light of each triangle. Neighbouring
+  // triangles that form a rectangle become one light.
   std::vector<uint32_t> add_mesh(std::span<const float> positions, std::span<const uint32_t> indices,
-                                 SpectrumRef emission, bool both_sides, LightPlace place);
+                                 SpectrumRef emission, bool both_sides, LightPlace place, uint32_t motion = none);
 
   const std::vector<LightRecord>& records() const { return records_; }
   const std::vector<LightPlace>& places() const { return places_; }
@@ -46,6 +49,7 @@ class LightTable {
 
   ParameterPool& pool_;
   const SpectrumPool& spectra_;
+  const MotionPool& motions_;
   std::vector<LightRecord> records_;
   std::vector<LightPlace> places_;
   std::vector<double> shares_;  // one for each light, or none

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "kernels/geometry/solids.h"
+#include "kernels/geometry/shapes.h"
 #include "kernels/math/functions.h"
 #include "lower/grid.h"
 #include "lower/teapot.h"
@@ -221,6 +221,26 @@ MeshData teapot(const Values& values, std::span<const double> newell) {
 
 }  // namespace
 
+MeshData rectangle_mesh(const Values& values) {
+  const auto c = vec_of(values, "corner");
+  const auto u = vec_of(values, "edge_u");
+  const auto v = vec_of(values, "edge_v");
+  // The sine of their angle, squared.
+  const Vec3 x = to_vec3(u);
+  const Vec3 y = to_vec3(v);
+  const float sine2 = length_squared(cross(x, y)) / (length_squared(x) * length_squared(y));
+  if (!(sine2 > 1e-12f))
+    throw std::invalid_argument("edge_u and edge_v span no area: they must not be zero or parallel");
+  MeshData mesh;
+  for (const auto& [s, t] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+    for (size_t k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(c[k] + s * u[k] + t * v[k]));
+    mesh.uvs.push_back(static_cast<float>(s));
+    mesh.uvs.push_back(static_cast<float>(t));
+  }
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
 MeshData tessellate(std::string_view type, const Values& values, std::span<const double> newell) {
   MeshData mesh;
   if (type == Cube::name) {
@@ -233,6 +253,8 @@ MeshData tessellate(std::string_view type, const Values& values, std::span<const
     mesh = torus_knot(values);
   } else if (type == Teapot::name) {
     mesh = teapot(values, newell);
+  } else if (type == Rectangle::name) {
+    mesh = rectangle_mesh(values);
   } else {
     throw std::invalid_argument("'" + std::string(type) + "' is no shape of this kind");
   }

@@ -24,11 +24,12 @@ UvMap uv_map(const Values& values) {
 
 }  // namespace
 
-uint32_t TexturePool::add_picture(Picture picture) {
+uint32_t TexturePool::add_picture(std::shared_ptr<SharedPicture> shared) {
+  const Picture& picture = shared->picture;
   if (picture.width == 0 || picture.height == 0 || picture.channels < 1 || picture.channels > 4)
     throw std::invalid_argument("a picture has at least one texel, and one to four channels");
   bulk_.push_back(picture.texels);
-  pictures_.emplace_back(std::move(picture), static_cast<uint32_t>(bulk_.size()));
+  pictures_.emplace_back(std::move(shared), static_cast<uint32_t>(bulk_.size()));
   return static_cast<uint32_t>(pictures_.size() - 1);
 }
 
@@ -53,8 +54,8 @@ const float* TexturePool::decoding(const PictureUse& use) {
 }
 
 void TexturePool::show(ImageTexture& texture, const PictureUse& use) {
-  const auto& [picture, section] = pictures_.at(use.picture);
-  texture.texels = {0, section, 0};
+  const Picture& picture = this->picture(use);
+  texture.texels = {0, pictures_.at(use.picture).second, 0};
   texture.width = picture.width;
   texture.height = picture.height;
   texture.channels = picture.channels;
@@ -66,11 +67,13 @@ void TexturePool::show(ImageTexture& texture, const PictureUse& use) {
 Mipmaps TexturePool::mipmaps_of(const PictureUse& use) {
   const auto found = mipmaps_.find({use.picture, use.srgb});
   if (found != mipmaps_.end()) return found->second;
-  const Picture& picture = pictures_.at(use.picture).first;
-  std::vector<float> texels = make_mipmaps(picture, decoding(use));
-  const uint32_t count = mipmap_count(picture.width, picture.height);
-  Mipmaps mipmaps{{0, static_cast<uint32_t>(bulk_.size() + 1), static_cast<uint32_t>(texels.size())}, count};
-  bulk_.push_back(section_of(std::move(texels)));
+  const Picture& picture = this->picture(use);
+  Section& made = shared(use).mipmaps[use.srgb];
+  if (made.data == nullptr) made = section_of(make_mipmaps(picture, decoding(use)));
+  bulk_.push_back(made);
+  const auto section = static_cast<uint32_t>(bulk_.size());
+  const Mipmaps mipmaps{{0, section, static_cast<uint32_t>(made.size / sizeof(float))},
+                        mipmap_count(picture.width, picture.height)};
   return mipmaps_[{use.picture, use.srgb}] = mipmaps;
 }
 

@@ -139,9 +139,13 @@ void require_indices_in_range(const MeshData& mesh, std::string_view name) {
 
 void repair(MeshData& mesh) {
   mesh.report.triangles_read = mesh.indices.size() / 3;
-  drop_triangles(mesh);
-  drop_vertices(mesh);
-  repair_normals(mesh);
+  if (mesh.polygons.empty()) {
+    drop_triangles(mesh);
+    drop_vertices(mesh);
+    repair_normals(mesh);
+  } else {
+    mesh.normals.clear();
+  }
   repair_uvs(mesh);
   repair_colors(mesh);
 }

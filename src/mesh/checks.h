@@ -17,6 +17,7 @@ void require_indices_in_range(const MeshData& mesh, std::string_view name);
 // - if a vertex is not finite, removes it and all vertices that no triangle uses;
 // - scales normals to unit length; replaces those that are zero or not finite by smooth normals (see normals.h);
 // - sets uvs that are not finite to (0, 0), and colours that are not finite to opaque white.
+// A mesh of polygons is the control mesh of a surface: it keeps all of them, for subdivide() to judge, and no normals.
 void repair(MeshData& mesh);
 
 }  // namespace accuray::mesh

@@ -25,14 +25,15 @@ struct MeshReport {
 
 // Arrays of N vertices and M triangles. Every index is below N, every value finite, every normal of unit length.
 struct MeshData {
-  std::vector<float> positions;             // 3 N
-  std::vector<float> normals;               // 3 N, or empty: the file has none
-  std::vector<float> uvs;                   // 2 N, or empty: the file has none
-  std::vector<float> colors;                // 4 N: red, green, blue and alpha from 0 to 1; or empty: the file has none
-  bool srgb_colors = false;                 // the colours, but not alpha, are stored with the sRGB curve
-  std::vector<uint32_t> indices;            // 3 M; the front side of a triangle is the counter-clockwise one
-  std::vector<uint32_t> materials;          // M: index into material_names; or empty: the file names none
-  std::vector<uint32_t> smoothing_groups;   // M: 0 is flat; or empty: the file has none
+  std::vector<float> positions;            // 3 N
+  std::vector<float> normals;              // 3 N, or empty: the file has none
+  std::vector<float> uvs;                  // 2 N, or empty: the file has none
+  std::vector<float> colors;               // 4 N: red, green, blue and alpha from 0 to 1; or empty: the file has none
+  bool srgb_colors = false;                // the colours, but not alpha, are stored with the sRGB curve
+  std::vector<uint32_t> indices;           // 3 M; the front side of a triangle is the counter-clockwise one
+  std::vector<uint32_t> polygons;          // corners of each polygon, whose fans the indices are; or empty: no polygons
+  std::vector<uint32_t> materials;         // M: index into material_names; or empty: the file names none
+  std::vector<uint32_t> smoothing_groups;  // M: 0 is flat; or empty: the file has none
   std::vector<std::string> material_names;  // in the order of their first use
   std::vector<std::string> libraries;       // what the file names its materials' files, one text per line
   MeshReport report;

@@ -44,7 +44,7 @@ struct Attribute {
 
 class ObjReader {
  public:
-  explicit ObjReader(Input input) : input_(std::move(input)) {}
+  ObjReader(Input input, bool keep_polygons) : input_(std::move(input)), keep_polygons_(keep_polygons) {}
 
   MeshData read() {
     std::string_view line;
@@ -60,7 +60,7 @@ class ObjReader {
  private:
   // Smoothing groups make the normals of a file that has none.
   void smooth() {
-    if (mesh_.smoothing_groups.empty() || !mesh_.normals.empty()) return;
+    if (mesh_.smoothing_groups.empty() || !mesh_.normals.empty() || keep_polygons_) return;
     CreasedMesh creased = creased_normals(mesh_.positions, mesh_.indices, mesh_.smoothing_groups, -2.0);
     mesh_.report.generated_normals += creased.source.size();
     take(mesh_.positions, 3, creased.source);
@@ -177,6 +177,7 @@ class ObjReader {
       previous = vertex;
     }
     if (count < 3) fail("f", "", std::string("has ") + std::to_string(count) + " corners", "3 or more corners");
+    if (keep_polygons_) mesh_.polygons.push_back(static_cast<uint32_t>(count));
     mark_triangles();
   }
 
@@ -353,6 +354,7 @@ class ObjReader {
   static constexpr size_t kMaxName = 200;
 
   Input input_;
+  bool keep_polygons_;
   uint64_t first_line_ = 0;
   std::string joined_;
   bool recognised_ = false;
@@ -372,10 +374,12 @@ class ObjReader {
 
 }  // namespace
 
-MeshData read_obj(const std::string& path) { return ObjReader(Input::open(path)).read(); }
+MeshData read_obj(const std::string& path, bool keep_polygons) {
+  return ObjReader(Input::open(path), keep_polygons).read();
+}
 
-MeshData read_obj_text(std::string_view text, const std::string& name) {
-  return ObjReader(Input::view(text, name)).read();
+MeshData read_obj_text(std::string_view text, const std::string& name, bool keep_polygons) {
+  return ObjReader(Input::view(text, name), keep_polygons).read();
 }
 
 }  // namespace accuray::mesh

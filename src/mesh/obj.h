@@ -23,9 +23,11 @@ namespace accuray::mesh {
 // have a normal and others have none, those others get smooth normals; likewise a missing uv becomes (0, 0), a missing
 // colour white. All are counted. A `\` at the end of a line joins it with the next, except in a comment. Numbers may be
 // nan, inf or too large: see repair() in checks.h for what happens to their triangles.
-MeshData read_obj(const std::string& path);
+//
+// keep_polygons: the sizes of the polygons too, and no normals; see repair().
+MeshData read_obj(const std::string& path, bool keep_polygons = false);
 
 // The same from memory; `name` stands for the file in messages.
-MeshData read_obj_text(std::string_view text, const std::string& name = "<memory>");
+MeshData read_obj_text(std::string_view text, const std::string& name = "<memory>", bool keep_polygons = false);
 
 }  // namespace accuray::mesh

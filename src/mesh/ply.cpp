@@ -43,7 +43,8 @@ constexpr size_t kSkip = kSlots;
 template <class Values>
 class PlyReader {
  public:
-  PlyReader(Input& input, const PlyHeader& header) : name_(input.name()), header_(header), values_(input) {}
+  PlyReader(Input& input, const PlyHeader& header, bool keep_polygons)
+      : name_(input.name()), header_(header), values_(input), keep_polygons_(keep_polygons) {}
 
   MeshData read() {
     find_roles();
@@ -213,6 +214,7 @@ class PlyReader {
   void read_polygon(const PlyProperty& property) {
     uint64_t length = list_length(property);
     if (length < 3) values_.fail("number of corners", std::to_string(length), "is too small", "3 or more");
+    if (keep_polygons_) mesh_.polygons.push_back(static_cast<uint32_t>(length));
     uint32_t first = 0, previous = 0;
     for (uint64_t i = 0; i < length; ++i) {
       double value = values_.next(property.type);
@@ -267,6 +269,7 @@ class PlyReader {
   std::string name_;
   const PlyHeader& header_;
   Values values_;
+  bool keep_polygons_;
   const PlyElement* vertex_ = nullptr;
   const PlyElement* face_ = nullptr;
   std::vector<size_t> slots_;  // per property of a vertex
@@ -277,23 +280,25 @@ class PlyReader {
   MeshData mesh_;
 };
 
-MeshData read(Input input) {
+MeshData read(Input input, bool keep_polygons) {
   PlyHeader header = read_ply_header(input);
   switch (header.format) {
     case PlyFormat::binary_little_endian:
-      return PlyReader<BinaryValues<std::endian::little>>(input, header).read();
+      return PlyReader<BinaryValues<std::endian::little>>(input, header, keep_polygons).read();
     case PlyFormat::binary_big_endian:
-      return PlyReader<BinaryValues<std::endian::big>>(input, header).read();
+      return PlyReader<BinaryValues<std::endian::big>>(input, header, keep_polygons).read();
     case PlyFormat::ascii:
       break;
   }
-  return PlyReader<AsciiValues>(input, header).read();
+  return PlyReader<AsciiValues>(input, header, keep_polygons).read();
 }
 
 }  // namespace
 
-MeshData read_ply(const std::string& path) { return read(Input::open(path)); }
+MeshData read_ply(const std::string& path, bool keep_polygons) { return read(Input::open(path), keep_polygons); }
 
-MeshData read_ply_bytes(std::string_view bytes, const std::string& name) { return read(Input::view(bytes, name)); }
+MeshData read_ply_bytes(std::string_view bytes, const std::string& name, bool keep_polygons) {
+  return read(Input::view(bytes, name), keep_polygons);
+}
 
 }  // namespace accuray::mesh

@@ -20,9 +20,11 @@ namespace accuray::mesh {
 // checked against the bytes that are there before anything is allocated for them. More data than the header declares
 // are an error too: the mesh would silently be a part of itself. Vertices keep their order unless repair() in
 // checks.h has to remove some.
-MeshData read_ply(const std::string& path);
+//
+// keep_polygons: the sizes of the polygons too, and no normals; see repair().
+MeshData read_ply(const std::string& path, bool keep_polygons = false);
 
 // The same from memory; `name` stands for the file in messages.
-MeshData read_ply_bytes(std::string_view bytes, const std::string& name = "<memory>");
+MeshData read_ply_bytes(std::string_view bytes, const std::string& name = "<memory>", bool keep_polygons = false);
 
 }  // namespace accuray::mesh

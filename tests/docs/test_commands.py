@@ -17,6 +17,7 @@ replaced, as this table says; a command that no row matches fails the test.
 | `ruff ...`, `clang-format ...` | the tool with `--version`, if it is installed |
 | `... > FILE` | without the redirection |
 | `pip`, `uv pip`, `uv build`, `uvx`, `venv`, `apt-get`, `unzip` | not run: `tests/packaging` runs what they do |
+| `ffmpeg ...` | not run: it is not ours |
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ SIZE = ["-q", "-w", "16", "--height", "12"]
 TOOLS = {"ruff", "clang-format"}
 # Where a command of the pages writes to a file.
 REDIRECTION = re.compile(r"\s*>\s*\S+$")
-ELSEWHERE = {"pip", "apt-get", "venv", "uvx", "build", "unzip"}
+ELSEWHERE = {"ffmpeg", "pip", "apt-get", "venv", "uvx", "build", "unzip"}
 PAGES_WITH_COMMANDS = [page for page in PAGES if blocks(page, "sh")]
 
 

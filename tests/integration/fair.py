@@ -51,6 +51,16 @@ def enlarged(scene: accuray.Scene, lamp: str, factor: float) -> accuray.Scene:
     return replace(scene, shapes=shapes, materials=scene.materials | {shapes[lamp]["material"]: material})
 
 
+def with_large_lantern(scene: accuray.Scene, lamp: str, lantern: str, factor: float = 2.0) -> accuray.Scene:
+    """A lamp, and a spherical one, `factor` times as large, with the same flux."""
+    changed = enlarged(scene, lamp, factor)
+    ball, material = dict(changed.shapes[lantern]), dict(changed.materials[changed.shapes[lantern]["material"]])
+    ball["radius"] *= factor
+    material["emission"] = replace(material["emission"], scale=material["emission"].scale / factor**2)
+    materials = changed.materials | {ball["material"]: material}
+    return replace(changed, shapes=changed.shapes | {lantern: ball}, materials=materials)
+
+
 def glowing(scene: accuray.Scene, material: str, radiance: float) -> accuray.Scene:
     """What is made of the material emits white light to both sides."""
     glow = Spectrum(role="emission", form="constant", value=radiance)
@@ -151,6 +161,9 @@ FAIR = {
     "many-lights": Fair("the sky ten times as bright", partial(brightened, light="sky", factor=10.0)),
     "mirror-and-glass": Fair("as the Cornell box", partial(enlarged, lamp="lamp", factor=4)),
     "mipmaps": Fair("as it is: its light comes from everywhere"),
+    "motion": Fair(
+        "lamp and lantern twice as large, 1/4 as bright", partial(with_large_lantern, lamp="lamp", lantern="lantern")
+    ),
     "openpbr": Fair("the lamp 3 times as wide and long, 1/9 as bright", partial(enlarged, lamp="lamp", factor=3.0)),
     "panes": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
     "rough-metals": Fair("the lamp twice as wide and long, 1/4 as bright", partial(enlarged, lamp="lamp", factor=2.0)),
@@ -161,6 +174,9 @@ FAIR = {
     ),
     "spot": Fair("cones of 70 degrees, so that every lamp lights most of the stage", partial(widened, outer=70.0)),
     "sunny": Fair(
+        "the sun 60 times as wide, with the same irradiance", partial(with_large_sun, light="day", diameter=32.0)
+    ),
+    "tea-hill": Fair(
         "the sun 60 times as wide, with the same irradiance", partial(with_large_sun, light="day", diameter=32.0)
     ),
     "teapot": Fair("the lamp 1.5 times as wide and long, 1/2.25 as bright", partial(enlarged, lamp="lamp", factor=1.5)),

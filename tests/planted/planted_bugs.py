@@ -35,7 +35,11 @@ def bug(name: str, file: str, old: str, new: str, *cases: str) -> Bug:
     return Bug(name, (Change(f"{KERNELS}/{file}", old, new),), cases)
 
 
-UNSCALED_LAMP = """MeshArrays unscaled = arrays;
+PLACE_MESH = """PlacedMesh place_mesh(MeshArrays arrays, const std::optional<Matrix>& transform) {
+  if (transform) move_mesh(*transform, arrays);"""
+UNSCALED_LAMP = """static MeshArrays unscaled;
+PlacedMesh place_mesh(MeshArrays arrays, const std::optional<Matrix>& transform) {
+  unscaled = arrays;
   if (transform) {
     Matrix rigid = *transform;
     for (size_t i = 0; i < rigid.size(); ++i) rigid[i] /= i % 4 == 3 ? 1.0 : scale_of(*transform);
@@ -90,8 +94,12 @@ BUGS = (
     Bug(
         "lamp-area-without-the-scale",
         (
-            Change("src/lower/builder.cpp", "if (transform) move_mesh(*transform, arrays);", UNSCALED_LAMP),
-            Change("src/lower/builder.cpp", "add_mesh_lights(arrays,", "add_mesh_lights(unscaled,"),
+            Change("src/lower/builder.cpp", PLACE_MESH, UNSCALED_LAMP),
+            Change(
+                "src/lower/builder.cpp",
+                "add_mesh_lights(positions, indices, materials_",
+                "add_mesh_lights(unscaled.positions, unscaled.indices, materials_",
+            ),
         ),
         ("C1.rectangle-scaled/light",),
     ),
@@ -237,5 +245,27 @@ BUGS = (
         "sincos((0.5f - film.y) * pi)",
         "sincos((0.5f - film.y) * half_pi)",
         "C7.panorama-side",
+    ),
+    bug(
+        "motion-in-steps",
+        "geometry/motion.h",
+        "scaled - static_cast<float>(k)};",
+        "0.5f};",
+        "C7.ball-0.05",
+        "C7.picture-camera",
+    ),
+    bug(
+        "light-stays-at-its-first-key",
+        "light/moving.h",
+        "const Moment moment = moment_of(scene, record.motion, time);",
+        "const Moment moment = moment_of(scene, record.motion, 0.0f * time);",
+        "C7.flying-lamp/light",
+    ),
+    bug(
+        "shutter-opens-too-soon",
+        "film/shutter.h",
+        "open[k] + sqrt(",
+        "open[k + 1] + sqrt(",
+        "C7.shutter-triangle-middle",
     ),
 )

@@ -173,7 +173,10 @@ NAMES = [
     scene("instance-lacks-of", '[shapes.i]\ntype = "instance"\n', "scene.toml:2: shapes.i", "`of`"),
     scene("instance-empty", '[shapes.i]\ntype = "instance"\nof = []\n', "scene.toml:4: shapes.i.of", "at least one"),
     scene(
-        "instance-of-itself", '[shapes.i]\ntype = "instance"\nof = ["i"]\n', "scene.toml:4: shapes.i.of", "one level"
+        "instance-of-itself",
+        '[shapes.i]\ntype = "instance"\nof = ["i"]\n',
+        "scene.toml:4: shapes.i.of",
+        "not a prototype",
     ),
     scene(
         "instance-of-no-prototype",

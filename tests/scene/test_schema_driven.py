@@ -166,7 +166,15 @@ def test_tables_say_all_that_validation_needs() -> None:
             assert param.doc, f"{type_.name}.{param.name} has no sentence"
             assert param.kind != "spectrum" or param.role in ("reflectance", "emission", "index")
             assert param.kind != "enum" or param.choices
-            assert param.kind != "array" or param.role in ("Nx2", "Nx3", "Nx3 or Nx4", "faces", "pixels")
+            assert param.kind != "array" or param.role in (
+                "Nx2",
+                "Nx3",
+                "Nx3 or Nx4",
+                "faces",
+                "pixels",
+                "file or Nx3x4",
+                "file or N",
+            )
 
 
 def test_json_schema_is_plain_and_complete() -> None:

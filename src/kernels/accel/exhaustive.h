@@ -18,9 +18,13 @@ struct Exhaustive {
     meet(ray, 0, scene->root->top_geometries, none, hit);
     for (uint32_t i = 0; i < scene->root->instances.count; ++i) {
       const InstanceRecord& instance = scene->instances[i];
+      if (instance.motion != none) {
+        meet(into_moving(*scene, instance.motion, ray), instance.first, instance.count, i, hit);
+        continue;
+      }
       Ray local = ray;
-      local.origin = instance.to_object.point(ray.origin);
-      local.direction = instance.to_object.vector(ray.direction);
+      local.origin = instance.to_world.point_back(ray.origin);
+      local.direction = instance.to_world.vector_back(ray.direction);
       meet(local, instance.first, instance.count, i, hit);
     }
     return hit;
@@ -43,7 +47,7 @@ struct Exhaustive {
   }
   void meet_mesh(const Ray& ray, const Mesh& mesh, uint32_t geometry, uint32_t instance, Hit& hit) const {
     for (uint32_t p = 0; p < mesh.indices.count / 3; ++p) {
-      const Triangle tri = triangle_of(*scene, mesh, p);
+      const Triangle tri = triangle_of(*scene, mesh, p, ray.time);
       TriangleHit found;
       if (intersect_triangle(tri.p0, tri.p1, tri.p2, ray, hit.t, found)) {
         hit = {found.t, found.u, found.v, p, geometry, instance};

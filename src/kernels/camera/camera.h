@@ -53,6 +53,11 @@ struct CameraCommon {
               .kind = Kind::vec,
               .doc = "Direction that is up in the picture.",
               .preset = "[0, 1, 0]",
+              .animatable = true},
+        Param{.name = "transform",
+              .kind = Kind::transform,
+              .doc = "Moves and turns the camera, which then, unless position and look_at say otherwise, starts at the "
+                     "origin and looks along -Z.",
               .animatable = true});
   }
 };

@@ -29,25 +29,29 @@ struct FilmCommon {
               .low = -60,
               .high = 60,
               .unit = "EV",
-              .group = "exposure:EV"},
+              .group = "exposure:EV",
+              .animatable = true},
         Param{.name = "iso",
               .kind = Kind::real,
               .doc = "Speed of the sensor (ISO 12232); with the camera's f_number it takes the place of exposure.",
               .low = 1e-3,
               .high = 1e9,
-              .group = "exposure:camera"},
+              .group = "exposure:camera",
+              .animatable = true},
         Param{.name = "shutter",
               .kind = Kind::real,
               .doc = "Exposure time; scales the PNG and blurs nothing.",
               .low = 1e-9,
               .high = 1e9,
               .unit = "s",
-              .group = "exposure:camera"},
+              .group = "exposure:camera",
+              .animatable = true},
         Param{.name = "white_balance",
               .kind = Kind::spectrum,
               .doc = "Light that shall look white: Bradford adaptation of the colours from it to D65.",
               .low = 0,
-              .role = "emission"},
+              .role = "emission",
+              .animatable = true},
         Param{
             .name = "hide_environment",
             .kind = Kind::boolean,
@@ -88,7 +92,11 @@ struct RenderCommon {
               .doc = "What the image holds besides its colours. indirect: the light that was scattered more than once "
                      "on its way to the camera.",
               .preset = "[]",
-              .choices = "indirect"});
+              .choices = "indirect"},
+        Param{.name = "compact",
+              .kind = Kind::boolean,
+              .doc = "Keeps the acceleration structure small, at some loss of speed.",
+              .preset = "false"});
   }
 };
 
@@ -117,7 +125,28 @@ struct AnimationCommon {
                             .doc = "When the shutter closes, from the frame's time on; a quarter of a frame after it.",
                             .low = -1e9,
                             .high = 1e9,
-                            .unit = "s"});
+                            .unit = "s"},
+                      Param{.name = "shutter_shape",
+                            .kind = Kind::choice,
+                            .doc = "What the shutter lets through: box all of the light all the time, triangle most of "
+                                   "it in the middle, trapezoid all of it but for a ramp at both ends.",
+                            .preset = "\"box\"",
+                            .choices = "box|triangle|trapezoid",
+                            .group = "shutter:shape"},
+                      Param{.name = "shutter_ramp",
+                            .kind = Kind::real,
+                            .doc = "Share of the interval that each ramp of a trapezoid takes.",
+                            .preset = "0.25",
+                            .low = 0,
+                            .high = 0.5,
+                            .group = "shutter:shape"},
+                      Param{.name = "shutter_curve",
+                            .kind = Kind::array,
+                            .doc = "Transmission of the shutter by lines between points, each a share of the interval "
+                                   "and what is let through there; the first is at 0, the last at 1.",
+                            .low = 0,
+                            .role = "Nx2",
+                            .group = "shutter:curve"});
   }
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/dispatch.h"
+#include "kernels/geometry/refinement_params.h"
 #include "kernels/geometry/solids.h"
 #include "kernels/scene_view.h"
 #include "kernels/schema.h"
@@ -10,23 +11,29 @@
 namespace accuray {
 
 struct Mesh {
-  Slice<float> positions;   // 3 per vertex, followed by one unused float (Embree reads 16 bytes)
+  Slice<float> vertices;    // of each its position, normal and texture coordinates, as far as there are; see triangle.h
   Slice<uint32_t> indices;  // 3 per triangle
-  Slice<float> normals;     // 3 per vertex, or empty: flat shading
-  Slice<float> uvs;         // 2 per vertex, or empty
   Slice<float> colors;      // 4 per vertex, linear Rec.709 and alpha, or empty
+  uint32_t vertex_count;
+  uint32_t stride;    // floats per vertex
+  uint32_t normal;    // first float of a vertex's normal; 0: flat shading
+  uint32_t uv;        // first of its texture coordinates; 0: none
+  uint32_t segments;  // between the keys of a mesh that deforms, equally long; 0: it does not
+
+  uint64_t floats_per_key() const { return uint64_t{vertex_count} * stride; }
 
   static constexpr const char* name = "mesh";
   static constexpr const char* doc =
-      "Triangles, from an OBJ, PLY or STL file or from arrays. The front side is where the vertices run "
-      "counter-clockwise.";
-  static constexpr auto params() {
+      "Triangles, from an OBJ, PLY or STL file or from arrays, or the smooth surface that they control. The front side "
+      "is where the vertices run counter-clockwise.";
+  static constexpr auto own_params() {
     return param_list(
         Param{.name = "file",
               .kind = Kind::file,
               .doc = "OBJ, PLY or STL file.",
               .choices = ".obj|.ply|.stl",
-              .group = "geometry:file"},
+              .group = "geometry:file",
+              .animatable = true},
         Param{.name = "positions",
               .kind = Kind::array,
               .doc = "Vertex positions.",
@@ -61,11 +68,14 @@ struct Mesh {
             .choices = "auto|flat|smooth"},
         Param{.name = "crease_angle",
               .kind = Kind::real,
-              .doc = "Where there are no normals, they are made, but not across edges that bend by more than this.",
+              .doc =
+                  "Where there are no normals, they are made, but not across edges that bend by more than this. With "
+                  "subdivision such edges are sharp for ever.",
               .low = 0,
               .high = 180,
               .unit = "deg"});
   }
+  static constexpr auto params() { return joined(own_params(), joined(subdivision_params(), refinement_params())); }
 };
 
 struct Sphere {
@@ -134,8 +144,8 @@ struct Rectangle {
 
   static constexpr const char* name = "rectangle";
   static constexpr const char* doc =
-      "A flat parallelogram, given by a corner and two edges; its front side is that of edge_u x edge_v.";
-  static constexpr auto params() {
+      "A parallelogram, given by a corner and two edges; its front side is that of edge_u x edge_v.";
+  static constexpr auto own_params() {
     return param_list(Param{.name = "corner",
                             .kind = Kind::vec,
                             .doc = "One corner.",
@@ -158,18 +168,37 @@ struct Rectangle {
                             .animatable = true,
                             .member = ACCURAY_OFFSET_OF(Rectangle, edge_v)});
   }
+  static constexpr auto params() { return joined(own_params(), refinement_params()); }
 };
 
 struct Instance {
   static constexpr bool rigid = true;
   static constexpr const char* name = "instance";
-  static constexpr const char* doc = "A copy of prototype shapes under the instance's transform.";
+  static constexpr const char* doc =
+      "A copy of prototype shapes under the instance's transform, or as many copies as `instances` has rows.";
   static constexpr auto params() {
-    return param_list(Param{.name = "of",
-                            .kind = Kind::reference,
-                            .doc = "Name or list of names of prototype shapes.",
-                            .role = "shape",
-                            .required = true});
+    return param_list(
+        Param{.name = "of",
+              .kind = Kind::reference,
+              .doc = "Name or list of names of prototype shapes, which may be instances of others themselves.",
+              .role = "shape",
+              .required = true},
+        Param{.name = "instances",
+              .kind = Kind::array,
+              .doc =
+                  "Transforms, each of a copy: three rows of four numbers, translations in the file's length_unit; "
+                  "an array of shape N x 3 x 4 or N x 12 in a .npy file or from Python, or a CSV file with a line of "
+                  "twelve numbers for each. Turns, mirrors, moves and one scale; `transform` follows.",
+              .unit = "m",
+              .choices = ".npy|.csv",
+              .role = "file or Nx3x4"},
+        Param{.name = "ids",
+              .kind = Kind::array,
+              .doc = "Which one of `of` each row of `instances` shows, counted from 0; by default it shows all of "
+                     "them. A file or array of N whole numbers, or the 13th column of a CSV file of `instances`.",
+              .low = 0,
+              .choices = ".npy|.csv",
+              .role = "file or N"});
   }
 };
 

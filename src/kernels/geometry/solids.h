@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/dispatch.h"
+#include "kernels/geometry/refinement_params.h"
 #include "kernels/schema.h"
 
 namespace accuray {
@@ -15,16 +16,18 @@ constexpr Param segments_param(const char* name, const char* doc, const char* pr
   return {.name = name, .kind = Kind::integer, .doc = doc, .preset = preset, .low = 3, .high = 65536};
 }
 constexpr Param length_param(const char* name, const char* doc, const char* preset) {
-  return {.name = name, .kind = Kind::real, .doc = doc, .preset = preset, .low = 1e-12, .unit = "m"};
+  return {
+      .name = name, .kind = Kind::real, .doc = doc, .preset = preset, .low = 1e-12, .unit = "m", .animatable = true};
 }
 constexpr Param center_param(const char* doc) {
-  return {.name = "center", .kind = Kind::vec, .doc = doc, .preset = "[0, 0, 0]", .unit = "m"};
+  return {.name = "center", .kind = Kind::vec, .doc = doc, .preset = "[0, 0, 0]", .unit = "m", .animatable = true};
 }
 constexpr Param axis_param() {
   return {.name = "axis",
           .kind = Kind::vec,
           .doc = "Direction of the axis that it lies around; any length but zero.",
-          .preset = "[0, 1, 0]"};
+          .preset = "[0, 1, 0]",
+          .animatable = true};
 }
 constexpr Param shading_param() {
   return {.name = "shading",
@@ -38,14 +41,16 @@ struct Cube {
   static constexpr const char* name = "cube";
   static constexpr const char* doc =
       "A box with its edges along the axes. Each face has the texture coordinates 0 to 1.";
-  static constexpr auto params() {
+  static constexpr auto own_params() {
     return param_list(center_param("Centre."), Param{.name = "size",
                                                      .kind = Kind::vec,
                                                      .doc = "Lengths of the edges along x, y and z.",
                                                      .preset = "[1, 1, 1]",
                                                      .low = 1e-12,
-                                                     .unit = "m"});
+                                                     .unit = "m",
+                                                     .animatable = true});
   }
+  static constexpr auto params() { return joined(own_params(), refinement_params()); }
 };
 
 struct Cylinder {
@@ -53,33 +58,45 @@ struct Cylinder {
   static constexpr const char* doc =
       "A round cylinder between two points. v runs from start to end; a cap has the coordinates of its bounding "
       "square.";
-  static constexpr auto params() {
+  static constexpr auto own_params() {
     return param_list(
-        Param{.name = "start", .kind = Kind::vec, .doc = "Centre of one end.", .preset = "[0, 0, 0]", .unit = "m"},
-        Param{.name = "end", .kind = Kind::vec, .doc = "Centre of the other end.", .preset = "[0, 1, 0]", .unit = "m"},
+        Param{.name = "start",
+              .kind = Kind::vec,
+              .doc = "Centre of one end.",
+              .preset = "[0, 0, 0]",
+              .unit = "m",
+              .animatable = true},
+        Param{.name = "end",
+              .kind = Kind::vec,
+              .doc = "Centre of the other end.",
+              .preset = "[0, 1, 0]",
+              .unit = "m",
+              .animatable = true},
         length_param("radius", "Radius.", "0.5"),
         Param{.name = "caps", .kind = Kind::boolean, .doc = "Whether its ends are closed.", .preset = "true"},
         segments_param("segments", "Segments around.", "96"), shading_param());
   }
+  static constexpr auto params() { return joined(own_params(), refinement_params()); }
 };
 
 struct Torus {
   static constexpr const char* name = "torus";
   static constexpr const char* doc = "A ring. u runs around its axis, v around its tube.";
-  static constexpr auto params() {
+  static constexpr auto own_params() {
     return param_list(center_param("Centre."), axis_param(),
                       length_param("radius", "Radius of the circle in the middle of the tube.", "1"),
                       length_param("tube_radius", "Radius of the tube; less than `radius`.", "0.25"),
                       segments_param("segments", "Segments around the axis.", "128"),
                       segments_param("tube_segments", "Segments around the tube.", "48"), shading_param());
   }
+  static constexpr auto params() { return joined(own_params(), refinement_params()); }
 };
 
 struct TorusKnot {
   static constexpr const char* name = "torus_knot";
   static constexpr const char* doc =
       "A closed tube that winds `p` times around an axis and `q` times around a ring. u runs along it, v around it.";
-  static constexpr auto params() {
+  static constexpr auto own_params() {
     return param_list(
         center_param("Centre of the ring."), axis_param(),
         Param{.name = "p",
@@ -95,6 +112,7 @@ struct TorusKnot {
         segments_param("segments", "Segments along the knot.", "512"),
         segments_param("tube_segments", "Segments around the tube.", "48"), shading_param());
   }
+  static constexpr auto params() { return joined(own_params(), refinement_params()); }
 };
 
 struct Teapot {
@@ -102,7 +120,7 @@ struct Teapot {
   static constexpr const char* doc =
       "The Utah teapot, from the 32 Bezier patches of Newell (1975) and Crow (1987): it stands on the origin with its "
       "spout to +x. It is no closed surface: the lid lies loose, handle and spout pass into the body.";
-  static constexpr auto params() {
+  static constexpr auto own_params() {
     return param_list(center_param("Centre of its bottom."),
                       length_param("height", "Height from the bottom to the tip of the lid.", "1"),
                       Param{.name = "segments",
@@ -113,6 +131,7 @@ struct Teapot {
                             .high = 65536},
                       shading_param());
   }
+  static constexpr auto params() { return joined(own_params(), refinement_params()); }
 };
 
 using Solids = TypeList<Cube, Cylinder, Torus, TorusKnot, Teapot>;

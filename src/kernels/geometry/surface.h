@@ -1,7 +1,8 @@
 // From a hit to a point on a surface: position with its error bound, and normals.
 #pragma once
 
-#include "kernels/geometry/shapes.h"
+#include "kernels/geometry/motion.h"
+#include "kernels/geometry/triangle.h"
 #include "kernels/math/rounding.h"
 
 namespace accuray {
@@ -19,27 +20,6 @@ struct Surface {
   uint32_t material;
   uint32_t light;  // the light that this point belongs to; none: not emissive
 };
-
-struct Triangle {
-  Vec3 p0, p1, p2;
-  uint32_t i0, i1, i2;
-};
-
-inline Vec3 load_vec3(const float* values, uint32_t index) {
-  const float* v = values + size_t{3} * index;
-  return {v[0], v[1], v[2]};
-}
-
-inline Triangle triangle_of(const SceneView& scene, const Mesh& mesh, uint32_t primitive) {
-  const uint32_t* index = scene.at(mesh.indices) + size_t{3} * primitive;
-  const float* positions = scene.at(mesh.positions);
-  return {load_vec3(positions, index[0]),
-          load_vec3(positions, index[1]),
-          load_vec3(positions, index[2]),
-          index[0],
-          index[1],
-          index[2]};
-}
 
 // Points are interpolated from p0 along the edges, which rounds three times at the magnitude of the coordinates and
 // some times at that of the triangle. The intersector's own test errs in proportion to the triangle's distance from the
@@ -68,8 +48,9 @@ inline Hit inset(Hit hit, float margin) {
 }
 
 // `rounding` is what the point will be rounded by after this, in the mesh's own space.
-inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& met, float rounding, Surface& s) {
-  const Triangle tri = triangle_of(scene, mesh, met.primitive);
+inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& met, float time, float rounding,
+                          Surface& s) {
+  const Triangle tri = triangle_of(scene, mesh, met.primitive, time);
   const Vec3 e1 = tri.p1 - tri.p0;
   const Vec3 e2 = tri.p2 - tri.p0;
   const Vec3 n0 = cross(e1, e2);
@@ -77,14 +58,11 @@ inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& m
   s.error = triangle_error(tri);
   const float extent = max_component(abs(e1)) + max_component(abs(e2));
   const Hit hit = inset(met, min(4.0f * (max_component(s.error) + rounding) * extent / doubled_area, 0.25f));
-  const float w = 1.0f - hit.u - hit.v;
   s.point = fma(hit.u, e1, fma(hit.v, e2, tri.p0));
   s.normal = n0 * (1.0f / doubled_area);
   s.shading = s.normal;
-  if (mesh.normals.count != 0) {
-    const float* normals = scene.at(mesh.normals);
-    const Vec3 n =
-        fma(w, load_vec3(normals, tri.i0), fma(hit.u, load_vec3(normals, tri.i1), load_vec3(normals, tri.i2) * hit.v));
+  if (mesh.normal != 0) {
+    const Vec3 n = vertex_normal(mesh, tri, hit.u, hit.v, time);
     const float squared = length_squared(n);
     if (squared > 0.0f && is_finite(squared)) {
       s.shading = n * (1.0f / sqrt(squared));
@@ -114,7 +92,7 @@ inline void place_on_disk(const Disk& disk, const Ray& ray, const Hit& hit, Surf
 inline void place_on_shape(const SceneView& scene, const GeometryRecord& geometry, const Ray& ray, const Hit& hit,
                            float rounding, Surface& s) {
   if (geometry.shape.tag == tag_of<Mesh>(Shapes{})) {
-    place_on_mesh(scene, scene.as<Mesh>(geometry.shape), hit, rounding, s);
+    place_on_mesh(scene, scene.as<Mesh>(geometry.shape), hit, ray.time, rounding, s);
   } else if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
     place_on_sphere(scene.as<Sphere>(geometry.shape), ray, hit, s);
   } else {
@@ -131,6 +109,34 @@ inline void to_world(const InstanceRecord& instance, Surface& s) {
   s.shading = normalize(m.vector(s.shading));
 }
 
+inline void place_on_still(const SceneView& scene, const InstanceRecord& instance, const Ray& ray, const Hit& hit,
+                           Surface& s) {
+  Ray local = ray;
+  local.origin = instance.to_world.point_back(ray.origin);
+  local.direction = instance.to_world.vector_back(ray.direction);
+  const Transform& m = instance.to_world;
+  const float scale = length({m.m[0][0], m.m[1][0], m.m[2][0]});
+  const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, local.direction, local.origin))) / scale;
+  place_on_shape(scene, scene.geometries[hit.geometry], local, hit, rounding, s);
+  to_world(instance, s);
+}
+
+// On an instance that moves: position, error and normals. Never inlined: still scenes do not pay for it.
+ACCURAY_NOINLINE inline Surface place_on_moving(const SceneView& scene, Ray ray, Hit hit) {
+  const Moment moment = moment_of(scene, scene.instances[hit.instance].motion, ray.time);
+  const Placement at = placement(moment);
+  ray.origin = at.to_object.point(ray.origin);
+  ray.direction = at.to_object.vector(ray.direction);
+  const Vec3 rounding = at.to_object.spread(rounding_at(moment, fma(hit.t, ray.direction, ray.origin)));
+  Surface s;
+  place_on_shape(scene, scene.geometries[hit.geometry], ray, hit, max_component(rounding), s);
+  s.error = at.to_world.spread(s.error) + rounding_at(moment, s.point);
+  s.point = at.to_world.point(s.point);
+  s.normal = normal_by(at.to_object, s.normal);
+  s.shading = normal_by(at.to_object, s.shading);
+  return s;
+}
+
 // `hit` must have met something.
 inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
   const GeometryRecord& geometry = scene.geometries[hit.geometry];
@@ -141,14 +147,12 @@ inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit
     place_on_shape(scene, geometry, ray, hit, 0.0f, s);
   } else {
     const InstanceRecord& instance = scene.instances[hit.instance];
-    Ray local = ray;
-    local.origin = instance.to_object.point(ray.origin);
-    local.direction = instance.to_object.vector(ray.direction);
-    const Transform& m = instance.to_world;
-    const float scale = length({m.m[0][0], m.m[1][0], m.m[2][0]});
-    const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, local.direction, local.origin))) / scale;
-    place_on_shape(scene, geometry, local, hit, rounding, s);
-    to_world(instance, s);
+    if (instance.motion != none) [[unlikely]] {
+      s = place_on_moving(scene, ray, hit);
+      s.material = geometry.material;
+    } else {
+      place_on_still(scene, instance, ray, hit, s);
+    }
     if (instance.material != none) s.material = instance.material;
     lights = instance.lights == none ? none : scene.lights_of_instance[instance.lights + hit.geometry - instance.first];
   }

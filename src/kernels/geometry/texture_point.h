@@ -30,16 +30,15 @@ inline void any_tangents(Vec3 normal, TexturePoint& p) {
   p.dpdv = frame.y;
 }
 
-inline TexturePoint point_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Vec3 normal) {
-  const Triangle tri = triangle_of(scene, mesh, hit.primitive);
+inline TexturePoint point_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Vec3 normal, float time) {
+  const Triangle tri = triangle_of(scene, mesh, hit.primitive, time);
   const Vec3 e1 = tri.p1 - tri.p0;
   const Vec3 e2 = tri.p2 - tri.p0;
-  if (mesh.uvs.count == 0) return {{hit.u, hit.v}, e1, e2};
-  const float* uvs = scene.at(mesh.uvs);
-  const auto uv = [&](uint32_t vertex) { return Vec2{uvs[size_t{2} * vertex], uvs[size_t{2} * vertex + 1]}; };
-  const Vec2 a = uv(tri.i0);
-  const Vec2 b = uv(tri.i1);
-  const Vec2 c = uv(tri.i2);
+  if (mesh.uv == 0) return {{hit.u, hit.v}, e1, e2};
+  const auto uv = [&](const float* vertex) { return Vec2{vertex[mesh.uv], vertex[mesh.uv + 1]}; };
+  const Vec2 a = uv(tri.v0);
+  const Vec2 b = uv(tri.v1);
+  const Vec2 c = uv(tri.v2);
   const Vec2 ab = {b.x - a.x, b.y - a.y};
   const Vec2 ac = {c.x - a.x, c.y - a.y};
   TexturePoint p;
@@ -76,16 +75,20 @@ inline TexturePoint point_on_disk(const Disk& disk, Vec3 point) {
       {fma(p.x, scale, 0.5f), fma(p.y, scale, 0.5f)}, frame.x * (2.0f * disk.radius), frame.y * (2.0f * disk.radius)};
 }
 
-// `hit` must have met something, and `surface` be what surface_at() made of it.
-inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const Surface& surface) {
+// A vector at a hit in the shape's own space.
+inline Vec3 into_object(const SceneView& scene, const Hit& hit, float time, Vec3 v) {
+  if (hit.instance == none) return v;
+  const InstanceRecord& instance = scene.instances[hit.instance];
+  if (instance.motion == none) return instance.to_world.vector_back(v);
+  return into_moving(scene, instance.motion, {{0.0f, 0.0f, 0.0f}, v, infinity, time}).direction;
+}
+
+// `point` and `normal` in the shape's own space.
+inline TexturePoint point_on_shape(const SceneView& scene, const Hit& hit, Vec3 point, Vec3 normal, float time) {
   const Tagged shape = scene.geometries[hit.geometry].shape;
-  const bool instanced = hit.instance != none;
-  const Vec3 point = instanced ? scene.instances[hit.instance].to_object.point(surface.point) : surface.point;
   TexturePoint p;
   if (shape.tag == tag_of<Mesh>(Shapes{})) {
-    Vec3 normal = surface.normal;
-    if (instanced) normal = normalize(scene.instances[hit.instance].to_object.vector(normal));
-    p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal);
+    p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal, time);
   } else if (shape.tag == tag_of<Sphere>(Shapes{})) {
     const Sphere& sphere = scene.as<Sphere>(shape);
     p = point_on_sphere(normalize(point - sphere.center), sphere.radius);
@@ -96,11 +99,28 @@ inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const 
   p.geometry = hit.geometry;
   p.primitive = hit.primitive;
   p.on_triangle = {hit.u, hit.v};
-  if (instanced) {
-    const Transform& to_world = scene.instances[hit.instance].to_world;
-    p.dpdu = to_world.vector(p.dpdu);
-    p.dpdv = to_world.vector(p.dpdv);
-  }
+  return p;
+}
+
+ACCURAY_NOINLINE inline TexturePoint point_on_moving(const SceneView& scene, Hit hit, Vec3 point, Vec3 normal,
+                                                     float time) {
+  const Placement at = placement(moment_of(scene, scene.instances[hit.instance].motion, time));
+  TexturePoint p = point_on_shape(scene, hit, at.to_object.point(point), normal_by(at.to_world, normal), time);
+  p.dpdu = at.to_world.vector(p.dpdu);
+  p.dpdv = at.to_world.vector(p.dpdv);
+  return p;
+}
+
+// `hit` must have met something at this time, and `surface` be what surface_at() made of it.
+inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const Surface& surface, float time) {
+  if (hit.instance == none) return point_on_shape(scene, hit, surface.point, surface.normal, time);
+  const InstanceRecord& instance = scene.instances[hit.instance];
+  if (instance.motion != none) [[unlikely]]
+    return point_on_moving(scene, hit, surface.point, surface.normal, time);
+  TexturePoint p = point_on_shape(scene, hit, instance.to_world.point_back(surface.point),
+                                  normalize(instance.to_world.vector_back(surface.normal)), time);
+  p.dpdu = instance.to_world.vector(p.dpdu);
+  p.dpdv = instance.to_world.vector(p.dpdv);
   return p;
 }
 

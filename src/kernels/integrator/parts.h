@@ -14,14 +14,15 @@ inline float part_number(const Path& path) {
   return uniform(hash(path.sampler.key, path.sampler.index, path.depth, met));
 }
 
-ACCURAY_NOINLINE inline Part chosen_part(const SceneView& scene, Hit hit, Surface surface, Vec3 direction,
+ACCURAY_NOINLINE inline Part chosen_part(const SceneView& scene, Hit hit, Surface surface, Vec3 direction, float time,
                                          float footprint, float u) {
   const bool behind = dot(direction, surface.normal) > 0.0f;
   const float cosine = min(abs(dot(direction, surface.shading)), 1.0f);
   Part part{surface.material, false, u, 1.0f};
   for (uint32_t level = 0; level < most_levels && scene.materials[part.material].composed != 0; ++level) {
     const MaterialRecord& whole = scene.materials[part.material];
-    const TexturePoint where = whole.reads_texture_point != 0 ? texture_point(scene, hit, surface) : TexturePoint{};
+    const TexturePoint where =
+        whole.reads_texture_point != 0 ? texture_point(scene, hit, surface, time) : TexturePoint{};
     PartQuestion question{scene, where, behind != part.turned, cosine};
     question.where.footprint = footprint;
     const Part next = dispatch(Compositions{}, whole.bsdf.tag, [&](auto type) {
@@ -35,7 +36,8 @@ ACCURAY_NOINLINE inline Part chosen_part(const SceneView& scene, Hit hit, Surfac
 inline Part part_at(const SceneView& scene, const Surface& surface, const Path& path) {
   if (scene.materials[surface.material].composed == 0) [[likely]]
     return {surface.material, false, 0.0f, 1.0f};
-  return chosen_part(scene, path.hit, surface, path.ray.direction, footprint_on(surface, path), part_number(path));
+  return chosen_part(scene, path.hit, surface, path.ray.direction, path.ray.time, footprint_on(surface, path),
+                     part_number(path));
 }
 
 // From here on the path sees the part: the surface turned around if that is what it shows.

@@ -73,7 +73,7 @@ struct PathTracing {
 
     // Emission met by the path itself.
     if (surface.light != none) {
-      const Spectrum emission = emitted(scene, path.hit, surface, toward_viewer, path.wl);
+      const Spectrum emission = emitted(scene, path.hit, surface, toward_viewer, path.ray.time, path.wl);
       if (!is_black(emission)) {
         const float weight = hit_weight(scene, strategy, departure(path), path.ray.direction, surface.light, surface);
         path.radiance = fma(path.throughput * weight, emission, path.radiance);

@@ -43,7 +43,7 @@ struct Reference {
       if (pass_hidden(scene, material, surface, exterior, path)) continue;
       const Vec3 toward_viewer = -path.ray.direction;
       if (surface.light != none)
-        path.radiance += path.throughput * emitted(scene, path.hit, surface, toward_viewer, path.wl);
+        path.radiance += path.throughput * emitted(scene, path.hit, surface, toward_viewer, path.ray.time, path.wl);
       if (max_depth >= 0 && path.depth >= static_cast<uint32_t>(max_depth)) return;
       show(part, surface, path);
       const f32x4 u = path.sampler.draw(direction_set(path));
@@ -68,7 +68,7 @@ struct Reference {
     for (uint32_t i = 0; i < scene.root->lights.count; ++i) {
       const LightRecord& record = scene.lights[i];
       if (!is_delta_light(record.light.tag)) continue;
-      const LightSample light = accuray::sample_light(scene, i, surface.point, Vec2{0.0f, 0.0f});
+      const LightSample light = accuray::sample_light(scene, i, surface.point, path.ray.time, Vec2{0.0f, 0.0f});
       const Vec3 wi = frame.to_local(light.wi);
       if ((dot(surface.normal, light.wi) > 0.0f) != (wi.z > 0.0f)) continue;
       const float share = visible_share(scene, accel, path, surface, light);

@@ -5,6 +5,8 @@
 #include "kernels/camera/list.h"
 #include "kernels/film/filter.h"
 #include "kernels/film/quantize.h"
+#include "kernels/film/shutter.h"
+#include "kernels/geometry/motion.h"
 #include "kernels/integrator/list.h"
 
 namespace accuray {
@@ -28,11 +30,14 @@ inline uint32_t dither_key(uint32_t key, uint32_t index) { return hash(key, inde
 
 // The scene's camera at a point of the film.
 inline CameraRay camera_ray(const SceneView& scene, Vec2 film, const Sampler& sampler, float time) {
-  return dispatch(Cameras{}, scene.root->camera.tag, [&](auto type) {
+  CameraRay seen = dispatch(Cameras{}, scene.root->camera.tag, [&](auto type) {
     using Camera = typename decltype(type)::type;
     const f32x4 u_lens = Camera::has_lens ? sampler.draw(lens_set) : lanes(0.5f);
     return scene.as<Camera>(scene.root->camera).ray(film, {u_lens[0], u_lens[1]}, time);
   });
+  if (scene.root->camera_motion != none) [[unlikely]]
+    seen.ray = carried_by(scene, scene.root->camera_motion, seen.ray);
+  return seen;
 }
 
 // The cone around a camera ray that covers a pixel, from how far the rays through the neighbouring pixels are, by the
@@ -56,7 +61,7 @@ inline Path generate(const SceneView& scene, const Request& request, uint32_t x,
   });
   const Vec2 film = {(static_cast<float>(x) + 0.5f + offset.x) / static_cast<float>(request.width),
                      (static_cast<float>(y) + 0.5f + offset.y) / static_cast<float>(request.height)};
-  const float time = u[3];
+  const float time = path_time(scene, u[3]);
   const CameraRay seen = camera_ray(scene, film, sampler, time);
   Path path = start_path(seen.ray, wl, sampler);
   if (scene.root->any_mipmap != 0) [[unlikely]]
@@ -130,8 +135,8 @@ inline Quantized sample_ray(const SceneView& scene, const A& accel, const Reques
   const uint32_t key = pixel_key(request, number, 0xffffffffu, index);
   const Sampler sampler = sampler_for(request, key, index);
   const f32x4 u = sampler.draw(camera_set);
-  Path path =
-      start_path({origin, direction, infinity, u[3]}, sample_wavelengths(scene, request.observer, u[2]), sampler);
+  Path path = start_path({origin, direction, infinity, path_time(scene, u[3])},
+                         sample_wavelengths(scene, request.observer, u[2]), sampler);
   trace<Integrators>(scene, accel, path);
   const f32x4 channels = respond(scene, request.observer, path.wl, path.radiance, alpha_of(path), u[2]);
   return quantize(channels, inverse_step, dither_key(key, index));

@@ -15,7 +15,7 @@ inline ShadingPoint shading_point(const SceneView& scene, const MaterialRecord& 
   const uint32_t seed = path.sampler.key + path.sampler.index * 0x9e3779b9u + path.depth * 0x85ebca6bu;
   const bool behind = leaves(path, surface);
   if (material.reads_texture_point == 0) return {scene, path.wl, TexturePoint{}, before, seed, behind};
-  ShadingPoint point{scene, path.wl, texture_point(scene, path.hit, surface), before, seed, behind};
+  ShadingPoint point{scene, path.wl, texture_point(scene, path.hit, surface, path.ray.time), before, seed, behind};
   point.where.footprint = footprint_on(surface, path);
   return point;
 }
@@ -25,7 +25,7 @@ inline Frame shading_frame(const SceneView& scene, const MaterialRecord& materia
   if (material.normal_map != none) [[unlikely]]
     normal = mapped_normal(scene, material, normal, p.where);
   if (material.bump_map != none) [[unlikely]]
-    normal = bumped_normal(scene, material.bump_map, material.bump_height, path.hit, normal, p.where);
+    normal = bumped_normal(scene, material.bump_map, material.bump_height, path.hit, path.ray.time, normal, p.where);
   if (normal.x != surface.normal.x || normal.y != surface.normal.y || normal.z != surface.normal.z)
     normal = facing_normal(surface.normal, normal, -path.ray.direction);
   return material.oriented == 0 ? Frame::around(normal) : Frame::along(normal, p.where.dpdu);

@@ -32,21 +32,22 @@ inline void intersect(const SceneView& scene, const A& accel, Path& path) {
 }
 
 // Radiance that the surface sends back along the ray.
-inline Spectrum emitted(const SceneView& scene, const Hit& hit, const Surface& surface, Vec3 wo,
+inline Spectrum emitted(const SceneView& scene, const Hit& hit, const Surface& surface, Vec3 wo, float time,
                         const Wavelengths& wl) {
   const LightRecord& light = scene.lights[surface.light];
   if (light.both_sides == 0 && dot(surface.normal, wo) <= 0.0f) return lanes(0.0f);
   const SpectrumRecord& emission = scene.spectra[light.emission.index];
   if (is_textured(emission.form)) [[unlikely]]
-    return emission_met(scene, emission, hit, surface, wl);
+    return emission_met(scene, emission, hit, surface, time, wl);
   return evaluate(emission, scene.tables, wl);
 }
 
 // What a light emits where a point of it was chosen.
-inline Spectrum sampled_emission(const SceneView& scene, uint32_t light, Vec3 point, const Wavelengths& wl) {
+inline Spectrum sampled_emission(const SceneView& scene, uint32_t light, Vec3 point, float time,
+                                 const Wavelengths& wl) {
   const SpectrumRecord& emission = scene.spectra[scene.lights[light].emission.index];
   if (is_textured(emission.form)) [[unlikely]]
-    return emission_chosen(scene, emission, light, point, wl);
+    return emission_chosen(scene, emission, light, point, time, wl);
   return evaluate(emission, scene.tables, wl);
 }
 
@@ -63,7 +64,7 @@ inline float hit_weight(const SceneView& scene, Strategy strategy, const Departu
   if (from.pdf == 0.0f || strategy == Strategy::bsdf) return 1.0f;
   if (strategy == Strategy::light) return 0.0f;
   const float chosen = choice_probability(scene, from.point, from.normal, from.time, light);
-  const float pdf = chosen * light_pdf(scene, light, from.point, wi, at);
+  const float pdf = chosen * light_pdf(scene, light, from.point, from.time, wi, at);
   return mis_weight(from.pdf, pdf);
 }
 
@@ -111,7 +112,7 @@ inline void sample_light(const SceneView& scene, const A& accel, Strategy strate
   const Vec3 normal = gathering_normal(material, frame, wo.z);
   const LightChoice choice = choose_light(scene, surface.point, normal, path.ray.time, u_choice);
   if (choice.light == none) return;
-  const LightSample light = sample_light(scene, choice.light, surface.point, u);
+  const LightSample light = sample_light(scene, choice.light, surface.point, path.ray.time, u);
   if (light.pdf == 0.0f || light.scale == 0.0f) return;
   const LightRecord& record = scene.lights[choice.light];
   const bool delta = is_delta_light(record.light.tag);
@@ -127,8 +128,8 @@ inline void sample_light(const SceneView& scene, const A& accel, Strategy strate
   if (is_black(towards.value)) return;
   const float share = visible_share(scene, accel, path, surface, light);
   if (share == 0.0f) return;
-  Spectrum arriving =
-      sampled_emission(scene, choice.light, light.point, path.wl) * towards.weight * (light.scale * share / pdf);
+  Spectrum arriving = sampled_emission(scene, choice.light, light.point, path.ray.time, path.wl) * towards.weight *
+                      (light.scale * share / pdf);
   if (path.inside.count != 0 || is_tinted(scene, material.interior))
     arriving *= share_towards(scene, material, surface, light, path);
   path.radiance = fma(path.throughput * towards.value, arriving, path.radiance);

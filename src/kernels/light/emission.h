@@ -17,7 +17,7 @@ inline Vec2 barycentric(const Triangle& tri, Vec3 point) {
 }
 
 // The hit of a ray that meets a light at a point of it.
-inline Hit hit_on_light(const SceneView& scene, uint32_t light, Vec3 point) {
+inline Hit hit_on_light(const SceneView& scene, uint32_t light, Vec3 point, float time) {
   const LightPlace place = scene.light_places[light];
   Hit hit;
   hit.geometry = place.geometry;
@@ -26,12 +26,17 @@ inline Hit hit_on_light(const SceneView& scene, uint32_t light, Vec3 point) {
   const Tagged shape = scene.geometries[place.geometry].shape;
   if (shape.tag != tag_of<Mesh>(Shapes{})) return hit;
   const Mesh& mesh = scene.as<Mesh>(shape);
-  if (place.instance != none) point = scene.instances[place.instance].to_object.point(point);
-  Vec2 b = barycentric(triangle_of(scene, mesh, hit.primitive), point);
+  const uint32_t motion = scene.lights[light].motion;
+  if (motion != none) {
+    point = into_moving(scene, motion, {point, {0.0f, 0.0f, 0.0f}, infinity, time}).origin;
+  } else if (place.instance != none) {
+    point = scene.instances[place.instance].to_world.point_back(point);
+  }
+  Vec2 b = barycentric(triangle_of(scene, mesh, hit.primitive, time), point);
   const bool outside = min(b.x, min(b.y, 1.0f - b.x - b.y)) < 0.0f;
   if (outside && scene.lights[light].light.tag == tag_of<QuadLight>(Lights{})) {
     ++hit.primitive;
-    b = barycentric(triangle_of(scene, mesh, hit.primitive), point);
+    b = barycentric(triangle_of(scene, mesh, hit.primitive, time), point);
   }
   hit.u = b.x;
   hit.v = b.y;
@@ -40,16 +45,16 @@ inline Hit hit_on_light(const SceneView& scene, uint32_t light, Vec3 point) {
 
 // What a textured light emits at a hit.
 ACCURAY_NOINLINE inline Spectrum emission_met(const SceneView& scene, const SpectrumRecord& emission, Hit hit,
-                                              Surface surface, Wavelengths wl) {
-  return textured_spectrum(scene, emission, texture_point(scene, hit, surface), wl);
+                                              Surface surface, float time, Wavelengths wl) {
+  return textured_spectrum(scene, emission, texture_point(scene, hit, surface, time), wl);
 }
 
 // The texture point of a place on a light; textures ask for no tangents.
-inline TexturePoint point_on_light(const SceneView& scene, uint32_t light, Vec3 point) {
+inline TexturePoint point_on_light(const SceneView& scene, uint32_t light, Vec3 point, float time) {
   Surface surface{};
   surface.point = point;
   surface.normal = {0.0f, 0.0f, 1.0f};
-  return texture_point(scene, hit_on_light(scene, light, point), surface);
+  return texture_point(scene, hit_on_light(scene, light, point, time), surface, time);
 }
 
 // Radiance of an infinite light in a direction.
@@ -75,9 +80,9 @@ inline Spectrum radiance_met(const SceneView& scene, const InfiniteRecord& infin
 
 // What a light whose emission is not the same everywhere emits at a chosen point, or in a direction if it is infinite.
 ACCURAY_NOINLINE inline Spectrum emission_chosen(const SceneView& scene, const SpectrumRecord& emission, uint32_t light,
-                                                 Vec3 point, Wavelengths wl) {
+                                                 Vec3 point, float time, Wavelengths wl) {
   if (is_infinite_light(scene.lights[light].light.tag)) return radiance_from(scene, light, point, wl);
-  return textured_spectrum(scene, emission, point_on_light(scene, light, point), wl);
+  return textured_spectrum(scene, emission, point_on_light(scene, light, point, time), wl);
 }
 
 }  // namespace accuray

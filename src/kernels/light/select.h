@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/light/list.h"
+#include "kernels/light/moving.h"
 #include "kernels/light/tree.h"
 
 namespace accuray {
@@ -75,9 +76,8 @@ inline float choice_probability(const SceneView& scene, Vec3 point, Vec3 normal,
   return scene.root->lights.count == 1 ? 1.0f : probability_among(scene, point, normal, light);
 }
 
-inline LightSample sample_light(const SceneView& scene, uint32_t light, Vec3 reference, Vec2 u) {
-  const LightRecord& record = scene.lights[light];
-  LightSample s = dispatch(Lights{}, record.light.tag, [&](auto type) {
+inline LightSample sample_still(const SceneView& scene, const LightRecord& record, Vec3 reference, Vec2 u) {
+  return dispatch(Lights{}, record.light.tag, [&](auto type) {
     const auto& chosen = scene.as<typename decltype(type)::type>(record.light);
     if constexpr (requires { chosen.sample(scene, reference, u); }) {
       return chosen.sample(scene, reference, u);
@@ -85,13 +85,21 @@ inline LightSample sample_light(const SceneView& scene, uint32_t light, Vec3 ref
       return chosen.sample(reference, u);
     }
   });
+}
+
+inline LightSample sample_light(const SceneView& scene, uint32_t light, Vec3 reference, float time, Vec2 u) {
+  const LightRecord& record = scene.lights[light];
+  LightSample s = record.motion == none ? sample_still(scene, record, reference, u)
+                                        : sample_moving(scene, record, reference, time, u);
   const bool faces_away = dot(s.normal, s.wi) >= 0.0f && length_squared(s.normal) > 0.0f;
   if (faces_away && record.both_sides == 0) s.scale = 0.0f;
   return s;
 }
 
-inline float light_pdf(const SceneView& scene, uint32_t light, Vec3 reference, Vec3 wi, const Surface& at) {
+inline float light_pdf(const SceneView& scene, uint32_t light, Vec3 reference, float time, Vec3 wi, const Surface& at) {
   const LightRecord& record = scene.lights[light];
+  if (record.motion != none) [[unlikely]]
+    return moving_pdf(scene, record, reference, time, wi, at.point, at.normal);
   return dispatch(Lights{}, record.light.tag, [&](auto type) {
     const auto& met = scene.as<typename decltype(type)::type>(record.light);
     if constexpr (requires { met.pdf(scene, reference, wi, at); }) {

@@ -12,7 +12,8 @@ constexpr auto sun_position_params() {
       Param{.name = "towards",
             .kind = Kind::vec,
             .doc = "Direction to the sun, of any length.",
-            .group = "position:vector"},
+            .group = "position:vector",
+            .animatable = true},
       Param{.name = "elevation",
             .kind = Kind::real,
             .doc = "Angle of the sun above the horizon.",
@@ -37,7 +38,8 @@ constexpr Param sun_diameter_param(const char* doc) {
           .preset = "0.533",
           .low = 0.001,
           .high = 180,
-          .unit = "deg"};
+          .unit = "deg",
+          .animatable = true};
 }
 
 struct SunLight {

@@ -27,13 +27,10 @@ inline BumpStep bump_step(const SceneView& scene, uint32_t texture, Vec3 dpdu, V
 
 // The shading normal of the surface raised along it by `height` times the texture's red channel: the normal less the
 // surface gradient of the height (Mikkelsen 2010), from central differences.
-ACCURAY_NOINLINE inline Vec3 bumped_normal(const SceneView& scene, uint32_t texture, float height, Hit hit,
+ACCURAY_NOINLINE inline Vec3 bumped_normal(const SceneView& scene, uint32_t texture, float height, Hit hit, float time,
                                            Vec3 shading, TexturePoint p) {
-  const auto to_object = [&](Vec3 v) {
-    return hit.instance == none ? v : scene.instances[hit.instance].to_object.vector(v);
-  };
-  const Vec3 along_u = to_object(p.dpdu);
-  const Vec3 along_v = to_object(p.dpdv);
+  const Vec3 along_u = into_object(scene, hit, time, p.dpdu);
+  const Vec3 along_v = into_object(scene, hit, time, p.dpdv);
   const BumpStep step = bump_step(scene, texture, along_u, along_v);
   const auto raised = [&](float du, float dv) {
     TexturePoint q = p;

@@ -27,6 +27,7 @@ struct MarbleTexture {
                             .low = 0,
                             .high = 100,
                             .unit = "1",
+                            .animatable = true,
                             .member = ACCURAY_OFFSET_OF(MarbleTexture, turbulence)},
                       octaves_param("6", ACCURAY_OFFSET_OF(MarbleTexture, octaves)));
   }

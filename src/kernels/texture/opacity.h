@@ -16,12 +16,12 @@ inline bool is_always_opaque(const MaterialRecord& material) {
 }
 
 // Does the surface at a hit let this ray through?
-inline bool is_passed(const SceneView& scene, const Hit& hit, const Surface& surface, uint32_t key) {
+inline bool is_passed(const SceneView& scene, const Hit& hit, const Surface& surface, float time, uint32_t key) {
   const MaterialRecord& material = scene.materials[surface.material];
   if (is_always_opaque(material)) return false;
   const RealRef& opacity = material.opacity;
   const float value =
-      opacity.texture == none ? opacity.value : textured_real(scene, opacity, texture_point(scene, hit, surface));
+      opacity.texture == none ? opacity.value : textured_real(scene, opacity, texture_point(scene, hit, surface, time));
   return uniform(hash(key, hit.geometry, hit.instance, hit.primitive)) >= value;
 }
 
@@ -40,7 +40,7 @@ ACCURAY_NOINLINE inline Stop closest_opaque(const SceneView& scene, const A& acc
   Hit hit = accel.closest(ray);
   for (uint32_t crossed = 0; hit.geometry != none && crossed < most_crossings; ++crossed) {
     const Surface surface = surface_at(scene, ray, hit);
-    if (!is_passed(scene, hit, surface, hash(key, crossed))) break;
+    if (!is_passed(scene, hit, surface, ray.time, hash(key, crossed))) break;
     ray.origin = offset_origin(surface.point, surface.error, surface.normal, ray.direction);
     hit = accel.closest(ray);
   }
@@ -55,7 +55,7 @@ ACCURAY_NOINLINE inline float opaque_transmittance(const SceneView& scene, const
     const Hit hit = accel.closest(ray);
     if (hit.geometry == none) return 1.0f;
     const Surface surface = surface_at(scene, ray, hit);
-    if (!is_passed(scene, hit, surface, hash(key, crossed))) return 0.0f;
+    if (!is_passed(scene, hit, surface, ray.time, hash(key, crossed))) return 0.0f;
     ray.origin = offset_origin(surface.point, surface.error, surface.normal, ray.direction);
     if (ray.far != infinity) ray.direction = to - ray.origin;
   }

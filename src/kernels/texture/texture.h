@@ -33,21 +33,25 @@ constexpr auto uv_params() {
       Param{.name = "uv_scale",
             .kind = Kind::vec,
             .doc = "Factors of the shape's texture coordinates u and v: how often the texture fits into 0 to 1.",
-            .preset = "[1, 1]"},
+            .preset = "[1, 1]",
+            .animatable = true},
       Param{.name = "uv_rotate",
             .kind = Kind::real,
             .doc = "Angle by which the scaled coordinates are turned, counter-clockwise.",
             .preset = "0",
-            .unit = "deg"},
+            .unit = "deg",
+            .animatable = true},
       Param{.name = "uv_translate",
             .kind = Kind::vec,
             .doc = "What is added to the coordinates at the end.",
-            .preset = "[0, 0]"});
+            .preset = "[0, 0]",
+            .animatable = true});
 }
 
 // A colour of a procedural texture as linear Rec.709.
 constexpr Param colour_param(const char* name, const char* doc, const char* preset, uint32_t member) {
-  return {.name = name, .kind = Kind::vec, .doc = doc, .preset = preset, .low = 0, .member = member};
+  return {
+      .name = name, .kind = Kind::vec, .doc = doc, .preset = preset, .low = 0, .animatable = true, .member = member};
 }
 
 inline TextureValue opaque(Vec3 rgb) { return lanes(rgb.x, rgb.y, rgb.z, 1.0f); }

@@ -26,6 +26,7 @@ struct WoodTexture {
                             .low = 0,
                             .high = 100,
                             .unit = "1",
+                            .animatable = true,
                             .member = ACCURAY_OFFSET_OF(WoodTexture, turbulence)});
   }
   float step() const { return 0x1p-8f * size; }
