@@ -168,6 +168,13 @@ def ies_files() -> Iterator[bytes]:
         yield f"TILT=NONE\n1 1000 1 {counts} 1 2 0 0 0\n1 1 10\n0 90\n".encode()
 
 
+def npy_files() -> Iterator[bytes]:
+    """Shapes of more numbers than there are."""
+    for shape in ("(4294967296, 3, 4)", "(2**62, 3, 4)", "(4611686018427387904, 12)", "(100000000, 12)", "(0, 12)"):
+        header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}\n"
+        yield b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + bytes(100)
+
+
 LIES: dict[str, list[bytes]] = {
     "ply": list(ply_files()),
     "stl": list(stl_files()),
@@ -184,6 +191,7 @@ LIES: dict[str, list[bytes]] = {
     "bmp": list(bmp_files()),
     "jpg": list(jpg_files()),
     "ies": list(ies_files()),
+    "npy": list(npy_files()),
 }
 
 
