@@ -22,7 +22,7 @@ configure() {
     -DPython_EXECUTABLE="$PWD/$BIN/python" -Dnanobind_DIR="$("$BIN/python" -m nanobind --cmake_dir)" >/dev/null
 }
 
-mapfile -t cpp < <(find src -name '*.h' -o -name '*.cpp' -o -name '*.cu' | sort)
+mapfile -t cpp < <(find src tests/fuzz -name '*.h' -o -name '*.cpp' -o -name '*.cu' | sort)
 mapfile -t units < <(find src -name '*.cpp' | sort)
 
 step 'ruff check' "$BIN/ruff" check --quiet .

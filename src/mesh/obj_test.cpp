@@ -223,6 +223,13 @@ TEST(Obj, FileEqualsMemory) {
   EXPECT_EQ(from_file.indices, from_memory.indices);
 }
 
+TEST(Obj, EveryTruncationAndByte) {
+  survive_sweeps(
+      "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0\nv 0 1.5e0 0\nvt 0 0\nvt 1 0\nvn 0 0 1\ns 1\nusemtl a\n"
+      "f 1/1/1 2/2/1 3//1 4\ns off\nf -4 -3 \\\n-2 # text\n",
+      [](const std::string& text) { return read_obj_text(text); });
+}
+
 TEST(Obj, Mutants) {
   const std::vector<std::string> seeds = {
       kSquare + "vt 0 0\nvt 1 1\nvn 0 0 1\nvn 0 1 0\ng a\nf 1/1/1 2/2/2 3/1/1 4/2/2\nf -1//-1 -2//-2 -3//-1\n",

@@ -276,6 +276,13 @@ TEST(Ply, TruncationAnywhereIsAnError) {
   }
 }
 
+TEST(Ply, EveryByteReplaced) {
+  for (const std::string& whole :
+       {binary_square(std::endian::little), binary_square(std::endian::big), kHeader + kSquare + "4 0 1 2 3"}) {
+    survive_sweeps(whole, [](const std::string& bytes) { return read_ply_bytes(bytes); });
+  }
+}
+
 // A file is read through a window; rows across its edges must come out the same.
 TEST(Ply, FileEqualsMemory) {
   std::string file =

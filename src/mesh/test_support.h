@@ -88,4 +88,23 @@ inline void survive_mutants(const std::vector<std::string>& seeds, const std::ve
   EXPECT_LT(good, count - count / 20);
 }
 
+// Reads every beginning of a file, and the file with each of its bytes replaced by others: each must give a valid mesh
+// or a ReadError.
+inline void survive_sweeps(const std::string& file, const std::function<MeshData(const std::string&)>& read) {
+  auto attempt = [&](const std::string& text) {
+    try {
+      expect_valid(read(text));
+    } catch (const ReadError&) {
+    }
+  };
+  for (size_t at = 0; at < file.size() && !testing::Test::HasFatalFailure(); ++at) {
+    attempt(file.substr(0, at));
+    for (char byte : {'\0', '\xff', '9', '-', '\n', static_cast<char>(file[at] ^ 1)}) {
+      std::string changed = file;
+      changed[at] = byte;
+      attempt(changed);
+    }
+  }
+}
+
 }  // namespace accuray::mesh

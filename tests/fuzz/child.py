@@ -3,9 +3,8 @@
     python -m tests.fuzz.child FOLDER [--seconds S | --runs N] [--sweep STEPS] [--seed K] READER...
 
 Before each attempt the file is in FOLDER/current.SUFFIX, for the one that is the last; FOLDER/runs says how many there
-were. A read that takes more than ten
-seconds, or needs two GiB more than this process had, ends it. Writes a JSON object: per reader how many files were read
-and refused, the longest message, and the kinds of messages.
+were. A read that takes ten seconds of the processor, a minute, or two GiB more than this process had, ends it.
+Writes a JSON object: per reader how many files were read and refused, the longest message, and the kinds of messages.
 """
 
 from __future__ import annotations
@@ -19,12 +18,15 @@ import resource
 import signal
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from tests.fuzz.readers import READERS, Reader
 
-HANG = 10
+CPU_SECONDS = 10.0
+WALL_SECONDS = 60.0
+"""A read that takes more is a hang; a busy machine takes nobody's processor time, but makes everyone wait."""
 ROOM = 2 << 30
 MOST_MEMBERS = 3000
 
@@ -35,18 +37,35 @@ def limit_memory(room: int) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (size + room, resource.getrlimit(resource.RLIMIT_AS)[1]))
 
 
+def report_ends() -> None:
+    """Crashes and hangs say where they happened before they end this process."""
+    faulthandler.enable()
+    for number in (signal.SIGALRM, signal.SIGPROF):
+        faulthandler.register(number, chain=True)
+
+
 def attempt(reader: Reader, folder: Path, content: bytes) -> str | None:
     """Reads the content as a file: None if it is one, else the message. Anything but the reader's errors ends us."""
     path = folder / f"current{reader.suffix}"
     path.write_bytes(content)
-    signal.alarm(HANG)
-    try:
-        reader.read(path)
-    except reader.errors as error:
-        return str(error)
-    finally:
-        signal.alarm(0)
+    with watched():
+        try:
+            reader.read(path)
+        except reader.errors as error:
+            return str(error)
     return None
+
+
+@contextmanager
+def watched() -> Iterator[None]:
+    """Ends this process, with a report of where it was, if what is inside takes too long."""
+    signal.setitimer(signal.ITIMER_PROF, CPU_SECONDS)
+    signal.setitimer(signal.ITIMER_REAL, WALL_SECONDS)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 def sweeps(content: bytes, steps: int) -> Iterator[bytes]:
@@ -110,8 +129,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("readers", nargs="+", choices=sorted(READERS))
     given = parser.parse_args()
-    faulthandler.enable()
-    faulthandler.register(signal.SIGALRM, chain=True)  # says where, and then the signal ends the process
+    report_ends()
     for name in given.readers:
         (given.folder / "reader").write_text(name)
         print(json.dumps({name: fuzz(name, given)}), flush=True)

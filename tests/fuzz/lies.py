@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.fuzz import seeds
-from tests.fuzz.child import attempt, limit_memory
+from tests.fuzz.child import attempt, limit_memory, report_ends
 from tests.fuzz.readers import READERS
 
 ROOM = 48 << 20
@@ -168,6 +168,13 @@ def ies_files() -> Iterator[bytes]:
         yield f"TILT=NONE\n1 1000 1 {counts} 1 2 0 0 0\n1 1 10\n0 90\n".encode()
 
 
+def npy_files() -> Iterator[bytes]:
+    """Shapes of more numbers than there are."""
+    for shape in ("(4294967296, 3, 4)", "(2**62, 3, 4)", "(4611686018427387904, 12)", "(100000000, 12)", "(0, 12)"):
+        header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}\n"
+        yield b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + bytes(100)
+
+
 LIES: dict[str, list[bytes]] = {
     "ply": list(ply_files()),
     "stl": list(stl_files()),
@@ -184,6 +191,7 @@ LIES: dict[str, list[bytes]] = {
     "bmp": list(bmp_files()),
     "jpg": list(jpg_files()),
     "ies": list(ies_files()),
+    "npy": list(npy_files()),
 }
 
 
@@ -197,6 +205,7 @@ def answer(name: str, folder: Path, content: bytes) -> str | None:
 
 def main() -> None:
     """The command."""
+    report_ends()
     folder = Path(sys.argv[1])
     answers: dict[str, list[str | None]] = {}
     for name, files in LIES.items():

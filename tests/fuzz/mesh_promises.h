@@ -18,7 +18,7 @@ inline void require(bool kept, const char* promise) {
   std::abort();
 }
 
-// The promises of MeshData.
+// The promises of MeshData. Polygons, which subdivide() judges, keep positions as they are.
 inline void require_promises(const MeshData& mesh) {
   const size_t vertices = mesh.positions.size() / 3, triangles = mesh.indices.size() / 3;
   require(mesh.positions.size() == 3 * vertices && mesh.indices.size() == 3 * triangles, "whole rows");
@@ -28,7 +28,12 @@ inline void require_promises(const MeshData& mesh) {
   require(mesh.materials.empty() || mesh.materials.size() == triangles, "a material for each triangle");
   for (uint32_t index : mesh.indices) require(index < vertices, "indices in range");
   for (uint32_t material : mesh.materials) require(material < mesh.material_names.size(), "materials in range");
-  for (float x : mesh.positions) require(std::fabs(x) <= kMaxCoordinate, "finite positions");
+  size_t fans = 0;
+  for (uint32_t corners : mesh.polygons) fans += corners - 2;
+  require(mesh.polygons.empty() || fans == triangles, "the triangles are the polygons' fans");
+  for (float x : mesh.positions) {
+    require(!mesh.polygons.empty() || std::fabs(x) <= kMaxCoordinate, "finite positions");
+  }
   for (float x : mesh.uvs) require(std::isfinite(x), "finite uvs");
   for (float x : mesh.colors) require(std::isfinite(x), "finite colours");
   for (size_t i = 0; i < mesh.normals.size(); i += 3) {

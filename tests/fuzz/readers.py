@@ -55,6 +55,16 @@ def spectrum(path: Path) -> None:
     accuray.Scene.from_dict({"materials": {"m": material}}, folder=path.parent)
 
 
+def places(path: Path) -> None:
+    """A file of the transforms of instances."""
+    shapes = {
+        "ball": {"type": "sphere", "material": "m", "prototype": True},
+        "field": {"type": "instance", "of": "ball", "instances": path.name},
+    }
+    description = {"materials": {"m": {"type": "diffuse"}}, "shapes": shapes}
+    devices.load(accuray.Scene.from_dict(description, folder=path.parent))
+
+
 def library(path: Path) -> None:
     """An MTL file, through an OBJ file that names it."""
     (path.parent / "user.obj").write_bytes(seeds.obj_with_library(path.name))
@@ -84,6 +94,8 @@ TOML_TOKENS = (
     b"transform = {scale = 0}\n",
 )  # fmt: skip
 
+NPY_TOKENS = (b"<f4", b">f8", b"|O", b"|V4", b"<i2", b"(", b")", b"True", b"4294967296", b"-1", b"'shape'", b"[", b"\n")
+
 READERS: dict[str, Reader] = {
     "toml": Reader(".toml", seeds.toml_scenes, mutation.by_tokens(*TEXT_TOKENS, *TOML_TOKENS), scene),
     "json": Reader(".json", seeds.json_scenes, mutation.json_document, scene),
@@ -98,6 +110,8 @@ READERS: dict[str, Reader] = {
         ".ies", seeds.ies, mutation.by_tokens(*TEXT_TOKENS, b"TILT=", b"1 2 3"), part("lights", {"type": "ies"})
     ),
     "csv": Reader(".csv", seeds.csv, mutation.by_tokens(*TEXT_TOKENS, b","), spectrum),
+    "npy": Reader(".npy", seeds.npy, mutation.by_tokens(*mutation.WORDS, *NPY_TOKENS), places),
+    "rows": Reader(".csv", seeds.rows, mutation.by_tokens(*TEXT_TOKENS, b","), places),
     **{
         kind: Reader(
             f".{kind}",

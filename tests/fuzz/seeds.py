@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import struct
 import tempfile
@@ -83,6 +84,57 @@ radiance = { wavelengths = [400, 550, 700], values = [1, 0.5, 0.2] }
 type = "point"
 position = [1, 2, 1]
 intensity = "100 cd"
+"""
+
+MOVING = """accuray = 1
+[film]
+width = 8
+height = 6
+[animation]
+fps = 25
+frame = 10
+shutter_open = "-10 ms"
+shutter_close = "10 ms"
+shutter_shape = "trapezoid"
+shutter_ramp = 0.2
+[camera]
+type = "perspective"
+position = [0, 1, 4]
+look_at = [0, 0, 0]
+fov = { keys = [{ time = 0, value = "40 deg" }, { time = "1 s", value = "50 deg" }], interpolation = "smooth" }
+[textures.bumps]
+type = "noise"
+[materials.matte]
+type = "diffuse"
+[shapes.stone]
+type = "mesh"
+material = "matte"
+subdivision = "catmull_clark"
+subdivision_levels = 1
+displacement = "bumps"
+displacement_scale = 0.1
+creases = [[0, 1, 2.5]]
+positions = [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1], [0, 1, 0]]
+faces = [[0, 3, 2, 1], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
+[shapes.flap]
+type = "mesh"
+material = "matte"
+faces = [[0, 1, 2]]
+positions = { keys = [
+  { time = 0, value = [[0, 2, 0], [1, 2, 0], [1, 3, 0]] },
+  { time = 1, value = [[0, 2, 0], [1, 2, 0], [1, 3, 1]] },
+] }
+[shapes.ball]
+type = "sphere"
+radius = 0.2
+material = "matte"
+transform = { keys = [
+  { time = 0, rotate = { axis = [0, 1, 0], angle = 0 } },
+  { time = 1, translate = [1, 1, 0], rotate = { axis = [0, 1, 0], angle = 720 } },
+] }
+[lights.sky]
+type = "constant"
+radiance = 1
 """
 
 OBJ = (
@@ -178,6 +230,26 @@ def ies() -> list[bytes]:
 def csv() -> list[bytes]:
     """Measured spectra of one column and of two."""
     return [b"# text\nnm,a\n400,0.1\n500,0.5\n700.5,1e-1\n", b"nm, a, b\n380, 1, 0.2\n390, 0.3, 0.4\n780, 0, 1\n"]
+
+
+ROWS = np.stack([scale * np.eye(3, 4) + place * np.eye(4)[3] for scale, place in ((1, 0), (0.5, 2.25), (-2, 1e3))])
+"""Three transforms in double precision, (3, 3, 4)."""
+
+
+def npy() -> list[bytes]:
+    """Transforms of instances in both orders of axes and bytes."""
+    files = []
+    for array in (ROWS, np.asfortranarray(ROWS.reshape(3, 12)), ROWS.astype(">f4")):
+        stream = io.BytesIO()
+        np.save(stream, array)
+        files.append(stream.getvalue())
+    return files
+
+
+def rows() -> list[bytes]:
+    """The same as text."""
+    lines = "\n".join(",".join(map(str, row)) for row in ROWS.reshape(3, 12).tolist())
+    return [f"# text\na,b,c,d,e,f,g,h,i,j,k,l\n{lines}\n".encode()]
 
 
 @cache

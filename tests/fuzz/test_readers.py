@@ -17,7 +17,7 @@ from tests.kernels.support import SEED
 MUTANTS = 100
 STEPS = 25
 GROUPS = {
-    "scenes": ("toml", "json", "override", "csv", "ies"),
+    "scenes": ("toml", "json", "override", "csv", "ies", "npy", "rows"),
     "models": ("gltf", "glb", "obj", "mtl", "ply", "stl"),
     "pictures": ("png", "jpg", "exr", "hdr", "tif", "tga", "bmp"),
     "images": ("film", "rgb", "decoder"),

@@ -32,6 +32,14 @@ def mesh(name: str) -> Scene:
     return {"materials": MATERIALS, "shapes": {"s": {"type": "mesh", "file": name, "material": "m"}}}
 
 
+def instances(name: str) -> Scene:
+    ball = {"type": "sphere", "material": "m", "prototype": True}
+    return {
+        "materials": MATERIALS,
+        "shapes": {"ball": ball, "s": {"type": "instance", "of": "ball", "instances": name}},
+    }
+
+
 #: Place -> (ending of its files, the scene that names one).
 PLACES: dict[str, tuple[str, Any]] = {
     "include toml": (".toml", lambda name: {"include": [name]}),
@@ -45,6 +53,7 @@ PLACES: dict[str, tuple[str, Any]] = {
     "reflectance": (".csv", spectrum),
     "radiance": (".csv", lambda name: {"lights": {"sky": {"type": "constant", "radiance": {"file": name}}}}),
     "environment": (".exr", lambda name: {"lights": {"sky": {"type": "environment", "file": name}}}),
+    "instances": (".npy", instances),
     "luminaire": (".ies", lambda name: {"lights": {"lamp": {"type": "ies", "file": name}}}),
 }
 
@@ -96,7 +105,8 @@ def contents(scratch: Path) -> dict[str, bytes]:
         ".csv": "nm,a\n400,0.1\n700,0.2\n",
         ".ies": ies_text([0.0, 90.0], [0.0], lambda a, _: 1.0 + a),
     }
-    pictures = {suffix: (scratch / f"a{suffix}").read_bytes() for suffix in (".png", ".exr")}
+    np.save(scratch / "a.npy", np.eye(4)[None, :3])
+    pictures = {suffix: (scratch / f"a{suffix}").read_bytes() for suffix in (".png", ".exr", ".npy")}
     return {suffix: content.encode() for suffix, content in text.items()} | pictures
 
 
