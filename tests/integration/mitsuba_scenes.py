@@ -44,7 +44,7 @@ def lamp(radiance: dict[str, Any]) -> dict[str, Any]:
         "to_world": Transform().translate([0, 2, 0])
         @ Transform().rotate([1, 0, 0], 90)
         @ Transform().scale([0.8, 0.8, 1]),
-        "bsdf": {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.2}},
+        "bsdf": grey(0.2),
         "emitter": {"type": "area", "radiance": radiance},
     }
 

@@ -76,7 +76,7 @@ def compare(name: str, described: dict[str, Any], folder: Path) -> None:
     }
     scene = accuray.Scene.from_dict(
         {"render": {"replicates": REPLICATES}, "film": film, "materials": materials, **described},
-        base=folder,
+        folder=folder,
     )
     mean, error = (values[:, :, 1] for values in pixel_estimates(accuray.render(scene, spp=SPP, seed=SEED).film))
     other, noise = stack.mean(axis=0), stack.std(axis=0, ddof=1) / np.sqrt(len(stack))
