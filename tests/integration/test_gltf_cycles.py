@@ -57,7 +57,7 @@ class Expected:
 
 
 EXPECTED = {
-    "lights": Expected(0.025),
+    "lights": Expected(0.03),
     "emission": Expected(0.025),
     "textures": Expected(0.05),
     "metals": Expected(0.05),
