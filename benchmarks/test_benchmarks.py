@@ -58,7 +58,8 @@ def test_rgb_is_that_of_the_spectrum(name: str) -> None:
     values = np.interp(cie[:, 0], spectrum.wavelengths, spectrum.values, left=0, right=0)
     light = np.ones(len(cie)) if name in ("emission", "daylight") else np.interp(cie[:, 0], lights[:, 0], lights[:, 3])
     xyz = cie[:, 1:].T @ (values * light) / (cie[:, 2] @ light)
-    assert TO_REC709 @ xyz == pytest.approx(spectrum.rgb, abs=HALF_LAST_DIGIT, rel=HALF_LAST_DIGIT)
+    error = 3e-4 if name == "daylight" else HALF_LAST_DIGIT  # D65 is white to four digits only
+    assert TO_REC709 @ xyz == pytest.approx(spectrum.rgb, abs=error, rel=error)
 
 
 def test_all_forms_of_a_scene_hold_the_same_geometry(tmp_path: Path) -> None:

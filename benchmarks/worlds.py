@@ -155,13 +155,13 @@ def instanced() -> Scene:
         "green": matt(0.5, 0.1, 0.4),
         "lamp": Material(reflectance=grey(0.0)),
     }
-    places = _crowd(settings.COPIES)
+    places = crowd(settings.COPIES)
     copies = {"knot": places[::2], "rock": places[1::2]}
     view = camera((0.0, 6.0, 6.0), (0.0, 1.0, -14.0), 42.0)
     return Scene("instanced", meshes, materials, view, daylight(40.0), "lamp", sky="overcast", copies=copies)
 
 
-def _crowd(count: int) -> NDArray[np.float64]:
+def crowd(count: int) -> NDArray[np.float64]:
     """Transforms (count, 3, 4): scattered over 30 m x 40 m in heaps, turned at random, scaled by 0.5 to 1."""
     rng = np.random.default_rng(3)
     axes = rng.normal(size=(count, 4))

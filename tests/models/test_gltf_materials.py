@@ -239,6 +239,31 @@ def test_texture_transform(transform: dict[str, Any]) -> None:
     expect_colors(looked_up(scene, points), expected)
 
 
+@pytest.mark.parametrize("ior", [1.5, 1.8])
+@pytest.mark.parametrize("pictured", [False, True])
+def test_gloss_takes_nothing_from_the_base_colour_but_what_it_reflects(ior: float, pictured: bool) -> None:
+    """Evenly lit and seen along the normal, a smooth plastic shows F + (1 - F) base colour (glTF 2.0, appendix B)."""
+    base = 0.7
+    pbr: dict[str, Any] = {"metallicFactor": 0, "roughnessFactor": 0, "baseColorFactor": [base] * 3 + [1]}
+    file = GltfFile()
+    if pictured:
+        pbr["baseColorTexture"] = {"index": file.picture(np.full((2, 2, 3), 188, np.uint8))}
+        base *= ((188 / 255 + 0.055) / 1.055) ** 2.4
+    extensions = {"KHR_materials_ior": {"ior": ior}}
+    file.square({"pbrMetallicRoughness": pbr, "extensions": extensions}, TEXCOORD_0=SQUARE_UVS)
+    seen = looked_up(accuray.load(file.save(Path("a.glb"))), [(0.5, 0.5)])[0]
+    fresnel = ((ior - 1) / (ior + 1)) ** 2
+    assert seen == pytest.approx([fresnel + (1 - fresnel) * base] * 3, abs=0.012)
+
+
+def test_a_coat_takes_nothing_from_the_base_colour_but_what_it_reflects() -> None:
+    extensions = {**NO_GLOSS, "KHR_materials_clearcoat": {"clearcoatFactor": 1}}
+    pbr = {**PLAIN, "baseColorFactor": [0.6, 0.6, 0.6, 1]}
+    file = GltfFile().square({"pbrMetallicRoughness": pbr, "extensions": extensions})
+    seen = looked_up(accuray.load(file.save(Path("a.glb"))), [(0.5, 0.5)])[0]
+    assert seen == pytest.approx([0.04 + 0.96 * 0.6] * 3, abs=0.012)
+
+
 def test_tinted_textures_are_multiplied() -> None:
     file = GltfFile()
     picture = file.picture(np.full((2, 2, 3), 188, np.uint8))  # 0.5 of linear light

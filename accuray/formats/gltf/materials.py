@@ -11,6 +11,8 @@ from accuray.formats.gltf.item import Item
 from accuray.formats.gltf.textures import COLOR, DATA, Look, Textures
 from accuray.formats.models.composing import MOST_PARTS, count_parts
 from accuray.formats.models.model import Model, Options, Table
+from accuray.formats.models.pictures import under_gloss
+from accuray.scene.openpbr import kept_inside, weighted_ior
 
 HEADER = ("opacity", "emission", "emission_sides", "normal_map")
 VERTEX_COLORS = "vertex colours"
@@ -74,18 +76,37 @@ class Materials:
 
     def _base(self, b: _Building, pbr: Item, factor: tuple[float, ...], colored: bool) -> tuple[float, ...] | None:
         """Base colour; returns what vertex colours are multiplied with, None if the material shows none."""
-        texture = self._color(b, pbr, "baseColorTexture", factor[:3])
+        kept = self._kept_under_gloss(b, pbr)
+        texture = self._color(b, pbr, "baseColorTexture", factor[:3], kept)
         if texture is not None:
             b.table["base_color"] = texture
             if colored:
                 self._model.note(b.place, "colours of vertices cannot be multiplied with a picture and were left out")
             return None
         if not colored:
-            b.table["base_color"] = list(factor[:3])
+            b.table["base_color"] = [under_gloss(value, kept) for value in factor[:3]]
             return None
+        if kept > 0.0:
+            self._model.note(b.place, "gloss darkens colours of vertices, which in glTF it does not")
         self._model.textures.setdefault(VERTEX_COLORS, {"type": "vertex_color"})
         b.table["base_color"] = {"texture": VERTEX_COLORS}
         return factor
+
+    def _kept_under_gloss(self, b: _Building, pbr: Item) -> float:
+        """Share of the light from a matte base that the surface above it would send back inside.
+
+        glTF knows no such darkening (appendix B of its specification): the base is made so much brighter. Not so what
+        is partly metal, whose colour is that of the metal as well, and what lets light through.
+        """
+        metal = pbr.number("metallicFactor", 1.0) > 0.0
+        transmission = b.item.extension("KHR_materials_transmission")
+        if metal or (transmission is not None and transmission.number("transmissionFactor", 0.0) > 0.0):
+            return 0.0
+        index, specular = b.item.extension("KHR_materials_ior"), b.item.extension("KHR_materials_specular")
+        ior = 1.5 if index is None else min(max(index.number("ior", 1.5, 0.0), 1.0), 3.0)
+        weight = 1.0 if specular is None else min(max(specular.number("specularFactor", 1.0), 0.0), 1.0)
+        bare = weighted_ior(ior, weight)
+        return kept_inside(1.0, bare) if bare > 1.0 else 0.0
 
     def _metal(self, b: _Building, pbr: Item) -> None:
         metal, rough = self._number(b, pbr, "metallicFactor", 1.0), self._number(b, pbr, "roughnessFactor", 1.0)
@@ -164,6 +185,10 @@ class Materials:
             rough = self._number(b, coat, "clearcoatRoughnessFactor", 0.0)
             b.table["coat_roughness"] = self._scaled(b, coat, "clearcoatRoughnessTexture", "green", rough)
             b.table["coat_ior"] = 1.5
+            if isinstance(b.table["base_color"], list):
+                b.table["coat_darkening"] = 0.0
+            else:
+                self._model.note(b.place, "the coat darkens the picture below it, which in glTF it does not")
             if coat.has("clearcoatNormalTexture"):
                 self._model.note(b.place, "clearcoatNormalTexture was left out: a coat has the normal map of its base")
         sheen = b.item.extension("KHR_materials_sheen")
@@ -278,8 +303,11 @@ class Materials:
             return factor
         return {"texture": name, "channel": channel, **({} if factor == 1.0 else {"scale": factor})}
 
-    def _color(self, b: _Building, item: Item, key: str, factor: Sequence[float]) -> Table | None:
-        """A texture times a colour, None without a texture."""
+    def _color(self, b: _Building, item: Item, key: str, factor: Sequence[float], kept: float = 0.0) -> Table | None:
+        """A texture times a colour, None without a texture; ``kept`` inside below gloss."""
+        if kept > 0.0:
+            name = self._name(b, item, key, Look("linear", tint=tuple(factor), kept=kept))
+            return None if name is None else {"texture": name}
         grey = len(set(factor)) == 1
         name = self._name(b, item, key, COLOR if grey else Look("linear", tint=tuple(factor)))
         if name is None:

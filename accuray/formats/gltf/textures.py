@@ -24,12 +24,13 @@ SUFFIXES = {"image/png": ".png", "image/jpeg": ".jpg", "image/webp": ".webp"}
 class Look:
     """What is made of a picture: colours, numbers, colours times ``tint``, or where alpha times a factor is enough.
 
-    ``mask`` is (factor of alpha, cutoff).
+    ``mask`` is (factor of alpha, cutoff); ``kept`` is the share of light that gloss above tinted colours keeps inside.
     """
 
     color_space: str
     tint: tuple[float, ...] | None = None
     mask: tuple[float, float] | None = None
+    kept: float = 0.0
 
 
 COLOR, DATA = Look("srgb"), Look("data")
@@ -86,7 +87,7 @@ class Textures:
                 "filter": "nearest",
             }
         if look.tint is not None:
-            return {"pixels": tinted(self._read(item, source), look.tint), "color_space": "linear"}
+            return {"pixels": tinted(self._read(item, source), look.tint, look.kept), "color_space": "linear"}
         if item.has("uri") and not item.text("uri").startswith("data:"):
             self._document.resolve(item.child("uri"))
             return {"file": file_name(item.child("uri")), "color_space": look.color_space}

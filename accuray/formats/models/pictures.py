@@ -19,12 +19,20 @@ def linear(pixels: NDArray[Any]) -> NDArray[np.float32]:
     return values.astype(np.float32)
 
 
-def tinted(pixels: NDArray[Any], tint: tuple[float, ...]) -> NDArray[np.float16]:
-    """The picture times a linear colour; grey pictures get three channels."""
+def tinted(pixels: NDArray[Any], tint: tuple[float, ...], kept: float = 0.0) -> NDArray[np.float16]:
+    """The picture times a linear colour; grey pictures get three channels. ``kept`` as in `under_gloss`."""
     values = linear(pixels)
     count = color_channels(pixels)
-    colors = values[..., :count] * np.array(tint, dtype=np.float32)
+    colors = under_gloss(values[..., :count] * np.array(tint, dtype=np.float32), kept)
     return np.concatenate([colors, values[..., count:]], axis=2).astype(np.float16)
+
+
+def under_gloss(reflectance: Any, kept: float) -> Any:
+    """What reflects so much below an interface as ``reflectance`` does without it, an array or a number.
+
+    The interface lets all light in and sends the share ``kept`` of diffuse light back: (1 - k) b / (1 - k b) = r.
+    """
+    return reflectance / (1.0 - kept + kept * reflectance)
 
 
 def alpha_mask(pixels: NDArray[Any], factor: float, cutoff: float) -> NDArray[np.uint8]:
