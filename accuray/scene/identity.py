@@ -60,8 +60,6 @@ def canonical(scene: Scene, schema: Schema) -> dict[str, Any]:
         "lights": {name: _object(item, lights) for name, item in scene.lights.items()},
         "shapes": {name: _object(item, shapes) for name, item in scene.shapes.items()},
     }
-    if scene.camera["transform"] is None:
-        del described["camera"]["transform"]  # what did not exist before version 6 of the lowered scene
     moving = [scene.camera, *scene.shapes.values()]
     if scene.clock.shutter and any(isinstance(table["transform"], Motion) or deforms(table) for table in moving):
         described["shutter"] = _value(scene.clock.shutter)
