@@ -65,6 +65,19 @@ def places(path: Path) -> None:
     devices.load(accuray.Scene.from_dict(description, folder=path.parent))
 
 
+def cage(path: Path) -> None:
+    """A mesh file as the faces that control a subdivision surface."""
+    shape = {
+        "type": "mesh",
+        "material": "m",
+        "file": path.name,
+        "subdivision": "catmull_clark",
+        "subdivision_levels": 1,
+    }
+    description = {"materials": {"m": {"type": "diffuse"}}, "shapes": {"s": shape}}
+    devices.load(accuray.Scene.from_dict(description, folder=path.parent))
+
+
 def library(path: Path) -> None:
     """An MTL file, through an OBJ file that names it."""
     (path.parent / "user.obj").write_bytes(seeds.obj_with_library(path.name))
@@ -110,6 +123,8 @@ READERS: dict[str, Reader] = {
         ".ies", seeds.ies, mutation.by_tokens(*TEXT_TOKENS, b"TILT=", b"1 2 3"), part("lights", {"type": "ies"})
     ),
     "csv": Reader(".csv", seeds.csv, mutation.by_tokens(*TEXT_TOKENS, b","), spectrum),
+    "cage-obj": Reader(".obj", seeds.obj_cages, mutation.by_tokens(*TEXT_TOKENS, *seeds.OBJ_TOKENS), cage),
+    "cage-ply": Reader(".ply", seeds.ply, mutation.by_tokens(*TEXT_TOKENS, *seeds.PLY_TOKENS, *mutation.WORDS), cage),
     "npy": Reader(".npy", seeds.npy, mutation.by_tokens(*mutation.WORDS, *NPY_TOKENS), places),
     "rows": Reader(".csv", seeds.rows, mutation.by_tokens(*TEXT_TOKENS, b","), places),
     **{

@@ -186,6 +186,12 @@ def obj() -> list[bytes]:
     return [OBJ.encode(), b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 3 2 1\n"]
 
 
+def obj_cages() -> list[bytes]:
+    """An open and a closed surface of polygons with and without uvs."""
+    pyramid = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nv 0 1 0\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
+    return [OBJ.encode(), pyramid.encode()]
+
+
 def mtl() -> list[bytes]:
     """An MTL file."""
     return [MTL.encode()]

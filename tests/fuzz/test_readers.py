@@ -18,7 +18,7 @@ MUTANTS = 100
 STEPS = 25
 GROUPS = {
     "scenes": ("toml", "json", "override", "csv", "ies", "npy", "rows"),
-    "models": ("gltf", "glb", "obj", "mtl", "ply", "stl"),
+    "models": ("gltf", "glb", "obj", "mtl", "ply", "stl", "cage-obj", "cage-ply"),
     "pictures": ("png", "jpg", "exr", "hdr", "tif", "tga", "bmp"),
     "images": ("film", "rgb", "decoder"),
 }
