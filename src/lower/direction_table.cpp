@@ -3,6 +3,7 @@
 #include <span>
 
 #include "kernels/math/functions.h"
+#include "kernels/math/interval.h"
 
 namespace accuray {
 
@@ -26,6 +27,20 @@ void append_sums(std::span<const double> weights, std::vector<float>& sums) {
     sums.push_back(static_cast<float>(sum));
   }
   if (total > 0.0) sums.back() = 1.0f;
+}
+
+// A power of two of parts of [0, 1], with some intervals to each.
+uint32_t guide_parts(uint32_t intervals) {
+  uint32_t parts = 1;
+  while (parts * 4 <= intervals) parts *= 2;
+  return parts;
+}
+
+void append_guide(const float* sums, uint32_t intervals, std::vector<uint32_t>& guide) {
+  const uint32_t parts = guide_parts(intervals);
+  for (uint32_t k = 0; k <= parts; ++k) {
+    guide.push_back(interval_of(sums, intervals, static_cast<float>(k) / static_cast<float>(parts)));
+  }
 }
 
 template <class T>
@@ -71,7 +86,20 @@ DirectionTable make_direction_table(const RadianceCells& cells, std::vector<Sect
     of_rows.push_back(sum * cell_solid_angle(cells.width, cells.height, row));
   }
   append_sums(of_rows, rows);
-  return {stored(std::move(rows), bulk), stored(std::move(columns), bulk), cells.width, cells.height};
+  std::vector<uint32_t> row_guide;
+  std::vector<uint32_t> column_guide;
+  append_guide(rows.data(), cells.height, row_guide);
+  for (size_t row = 0; row < cells.height; ++row) {
+    append_guide(columns.data() + row * (cells.width + 1), cells.width, column_guide);
+  }
+  return {stored(std::move(rows), bulk),
+          stored(std::move(columns), bulk),
+          stored(std::move(row_guide), bulk),
+          stored(std::move(column_guide), bulk),
+          cells.width,
+          cells.height,
+          guide_parts(cells.height),
+          guide_parts(cells.width)};
 }
 
 }  // namespace accuray
