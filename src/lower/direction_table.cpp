@@ -3,6 +3,7 @@
 #include <span>
 
 #include "kernels/math/functions.h"
+#include "kernels/math/interval.h"
 
 namespace accuray {
 
@@ -28,9 +29,24 @@ void append_sums(std::span<const double> weights, std::vector<float>& sums) {
   if (total > 0.0) sums.back() = 1.0f;
 }
 
-Slice<float> stored(const Section& section, std::vector<Section>& bulk) {
+// A power of two of parts of [0, 1], with some intervals to each.
+uint32_t guide_parts(uint32_t intervals) {
+  uint32_t parts = 1;
+  while (parts * 4 <= intervals) parts *= 2;
+  return parts;
+}
+
+void append_guide(const float* sums, uint32_t intervals, std::vector<uint32_t>& guide) {
+  const uint32_t parts = guide_parts(intervals);
+  for (uint32_t k = 0; k <= parts; ++k) {
+    guide.push_back(interval_of(sums, intervals, static_cast<float>(k) / static_cast<float>(parts)));
+  }
+}
+
+template <class T>
+Slice<T> stored(const Section& section, std::vector<Section>& bulk) {
   bulk.push_back(section);
-  return {0, static_cast<uint32_t>(bulk.size()), static_cast<uint32_t>(section.size / sizeof(float))};
+  return {0, static_cast<uint32_t>(bulk.size()), static_cast<uint32_t>(section.size / sizeof(T))};
 }
 
 }  // namespace
@@ -58,7 +74,14 @@ DirectionTable make_direction_table(const RadianceCells& cells, std::vector<Sect
 }
 
 DirectionTable place(const DirectionSections& made, std::vector<Section>& bulk) {
-  return {stored(made.rows, bulk), stored(made.columns, bulk), made.width, made.height};
+  return {stored<float>(made.rows, bulk),
+          stored<float>(made.columns, bulk),
+          stored<uint32_t>(made.row_guide, bulk),
+          stored<uint32_t>(made.column_guide, bulk),
+          made.width,
+          made.height,
+          guide_parts(made.height),
+          guide_parts(made.width)};
 }
 
 DirectionSections direction_sections(const RadianceCells& cells) {
@@ -77,7 +100,18 @@ DirectionSections direction_sections(const RadianceCells& cells) {
     of_rows.push_back(sum * cell_solid_angle(cells.width, cells.height, row));
   }
   append_sums(of_rows, rows);
-  return {section_of(std::move(rows)), section_of(std::move(columns)), cells.width, cells.height};
+  std::vector<uint32_t> row_guide;
+  std::vector<uint32_t> column_guide;
+  append_guide(rows.data(), cells.height, row_guide);
+  for (size_t row = 0; row < cells.height; ++row) {
+    append_guide(columns.data() + row * (cells.width + 1), cells.width, column_guide);
+  }
+  return {section_of(std::move(rows)),
+          section_of(std::move(columns)),
+          section_of(std::move(row_guide)),
+          section_of(std::move(column_guide)),
+          cells.width,
+          cells.height};
 }
 
 }  // namespace accuray

@@ -26,7 +26,7 @@ DirectionTable make_direction_table(const RadianceCells& cells, std::vector<Sect
 
 // The same in two steps: the sections, which many scenes may hold, and their place in one scene.
 struct DirectionSections {
-  Section rows, columns;
+  Section rows, columns, row_guide, column_guide;
   uint32_t width = 0, height = 0;
 };
 DirectionSections direction_sections(const RadianceCells& cells);

@@ -23,18 +23,22 @@ inline Vec3 map_direction(Vec2 place) {
 }
 
 // A density that is constant in each of width x height cells of the map: running sums over the rows, and over the
-// cells of each row. All are zero if nothing is to be drawn.
+// cells of each row, each with a guide to its intervals: without, looking them up is a fifth of the time in a room
+// behind a window. All sums are zero if nothing is to be drawn.
 struct DirectionTable {
-  Slice<float> rows;     // height + 1
-  Slice<float> columns;  // height x (width + 1)
-  uint32_t width, height;
+  Slice<float> rows;             // height + 1
+  Slice<float> columns;          // height x (width + 1)
+  Slice<uint32_t> row_guide;     // row_parts + 1
+  Slice<uint32_t> column_guide;  // height x (column_parts + 1)
+  uint32_t width, height, row_parts, column_parts;
 
   // A drawn direction; only pdf() tells its density, so that both ways to it agree in every bit.
   Vec3 sample(const SceneView& scene, Vec2 u) const {
     const float* row_sums = scene.at(rows);
-    const uint32_t row = interval_of(row_sums, height, u.y);
+    const uint32_t row = guided_interval_of(row_sums, scene.at(row_guide), row_parts, u.y);
     const float* sums = scene.at(columns) + static_cast<size_t>(row) * (width + 1);
-    const uint32_t column = interval_of(sums, width, u.x);
+    const uint32_t* guide = scene.at(column_guide) + static_cast<size_t>(row) * (column_parts + 1);
+    const uint32_t column = guided_interval_of(sums, guide, column_parts, u.x);
     return map_direction({within(sums, column, width, u.x), within(row_sums, row, height, u.y)});
   }
   // Per solid angle; 0 at the poles themselves, which have none.
