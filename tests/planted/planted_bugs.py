@@ -249,9 +249,8 @@ BUGS = (
     bug(
         "motion-in-steps",
         "geometry/motion.h",
-        "scaled - static_cast<float>(k)};",
-        "0.5f};",
-        "C7.ball-0.05",
+        "return {before, before + 1, step.share};",
+        "return {before, before + 1, 0.5f};",
         "C7.picture-camera",
     ),
     bug(
