@@ -132,4 +132,4 @@ INSTANCES_CONTENDERS = (
     Contender("mitsuba", "scalar_rgb", "multijitter"),
     Contender("cycles"),
 )
-"""Mitsuba's compiled variants trace a program for each instance anew: 200 of them take a minute, 4000 never end."""
+"""Mitsuba's compiled variants trace a program for each instance anew: 21 s before the first ray for 200 instances, and 600 were not ready after 100 s."""
