@@ -132,4 +132,5 @@ INSTANCES_CONTENDERS = (
     Contender("mitsuba", "scalar_rgb", "multijitter"),
     Contender("cycles"),
 )
-"""Mitsuba's compiled variants trace a program for each instance anew: 21 s before the first ray for 200 instances, and 600 were not ready after 100 s."""
+"""Mitsuba's compiled variants trace a program for each instance anew: 21 s before the first ray for 200 instances, and
+600 were not ready after 100 s."""
