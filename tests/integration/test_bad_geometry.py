@@ -21,6 +21,7 @@ pytest.importorskip("accuray._core", reason="the compiled module is not built")
 import accuray
 from accuray.cli import main
 from accuray.scene import schema
+from accuray.scene.motion import Motion
 from accuray.scene.placements import Transforms
 
 NAN, INF = float("nan"), float("inf")
@@ -286,7 +287,10 @@ def scaled(scene: accuray.Scene, factor: float) -> accuray.Scene:
         params = types[table["type"]].params
         given = [p.name for p in params if p.unit == "m" and isinstance(table.get(p.name), LENGTHS)]
         found = {name: _times(table[name], factor) for name in given}
-        if table.get("transform") is not None:
+        if isinstance(table.get("transform"), Motion):
+            poses = (pose._replace(move=_times(pose.move, factor)) for pose in table["transform"].poses)
+            found["transform"] = replace(table["transform"], poses=tuple(poses))
+        elif table.get("transform") is not None:
             found["transform"] = table["transform"] * np.array([[1, 1, 1, factor]] * 3 + [[1, 1, 1, 1]])
         return table | found
 

@@ -28,7 +28,6 @@ def watched(case: str) -> dict[str, Any]:
     """See ``watched_memory``."""
     command = [
         sys.executable,
-        "-S",
         "-c",
         f"import sys; sys.path[:0] = {sys.path!r}; import watched_memory as w; w.main()",
     ]

@@ -60,4 +60,4 @@ def main() -> None:
         ours = status("VmRSS") - before
         engine.LoadedScene(block)
         grown = status("VmHWM") - start
-    print(json.dumps({"estimate": lowering.budget.claimed, "grown": grown, "ours": ours, "count": count}))
+    print(json.dumps({"estimate": lowering.shapes.budget.claimed, "grown": grown, "ours": ours, "count": count}))

@@ -19,7 +19,7 @@ from accuray.scene import memory
 ROWS = similarities(30, 11)
 IDS = np.random.default_rng(2).integers(0, 2, len(ROWS))
 TURN = [{"rotate": {"axis": [1, 2, 3], "angle": 50}}, {"scale": -1.5}, {"translate": [0.2, 0.1, -0.3]}]
-RECORD = 64
+RECORD = 68
 
 
 def scene(shapes: dict[str, Any], **more: Any) -> accuray.Scene:
@@ -92,7 +92,7 @@ def test_instances_of_instances_are_multiplied_out() -> None:
         f"leaf{i:04}": instance("ball", transform=matrix(row), material="red")
         for i, row in enumerate(np.concatenate([product(places, leaf) for leaf in leaves]))
     }
-    counts = devices.lowering._Lowering(scene(deep)).instancing
+    counts = devices.lowering._Lowering(scene(deep)).shapes.instancing
     assert counts.total(["field"]) == 2 * 3 * (1 + 4) == len(flat)
     a, b = (np.asarray(accuray.render(scene(shapes), spp=64)) for shapes in (deep, flat))
     assert abs((a - b).mean()) < 2e-4
@@ -114,7 +114,7 @@ def test_prototypes_in_several_groups_are_stored_once() -> None:
     assert two.bytes < one.bytes + 1000
 
 
-def test_an_instance_takes_64_bytes() -> None:
+def test_an_instance_takes_its_record() -> None:
     few, many = (lower(scene({"f": instance("box", instances=similarities(n, 4))}))[0] for n in (1000, 21_000))
     assert many.bytes - few.bytes == 20_000 * RECORD
 

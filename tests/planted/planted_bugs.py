@@ -37,7 +37,8 @@ def bug(name: str, file: str, old: str, new: str, *cases: str) -> Bug:
 
 PLACE_MESH = """PlacedMesh place_mesh(MeshArrays arrays, const std::optional<Matrix>& transform) {
   if (transform) move_mesh(*transform, arrays);"""
-UNSCALED_LAMP = """static MeshArrays unscaled;
+ADD_MESH = "uint32_t SceneBuilder::add_mesh("
+UNSCALED_LAMP = """MeshArrays unscaled;
 PlacedMesh place_mesh(MeshArrays arrays, const std::optional<Matrix>& transform) {
   unscaled = arrays;
   if (transform) {
@@ -94,11 +95,12 @@ BUGS = (
     Bug(
         "lamp-area-without-the-scale",
         (
-            Change("src/lower/builder.cpp", PLACE_MESH, UNSCALED_LAMP),
+            Change("src/lower/placed_mesh.cpp", PLACE_MESH, UNSCALED_LAMP),
+            Change("src/lower/builder.cpp", ADD_MESH, f"extern MeshArrays unscaled;\n{ADD_MESH}"),
             Change(
                 "src/lower/builder.cpp",
-                "add_mesh_lights(positions, indices, materials_",
-                "add_mesh_lights(unscaled.positions, unscaled.indices, materials_",
+                "positions_of(placed.layout, placed.vertices.data), placed.index_values()",
+                "unscaled.positions, unscaled.indices",
             ),
         ),
         ("C1.rectangle-scaled/light",),
