@@ -47,7 +47,7 @@ struct Exhaustive {
   }
   void meet_mesh(const Ray& ray, const Mesh& mesh, uint32_t geometry, uint32_t instance, Hit& hit) const {
     for (uint32_t p = 0; p < mesh.indices.count / 3; ++p) {
-      const Triangle tri = triangle_of(*scene, mesh, p, ray.time);
+      const Triangle tri = triangle_of<true>(*scene, mesh, p, ray.time);
       TriangleHit found;
       if (intersect_triangle(tri.p0, tri.p1, tri.p2, ray, hit.t, found)) {
         hit = {found.t, found.u, found.v, p, geometry, instance};

@@ -20,33 +20,40 @@ struct Triangle {
   const float *v0, *v1, *v2;  // the vertices, at the first key
 };
 
-ACCURAY_NOINLINE inline Vec3 deformed(const float* values, uint64_t floats_per_key, uint32_t segments, float time) {
-  const Step step = step_at(time, segments);
-  const float* before = values + floats_per_key * step.segment;
-  return fma(1.0f - step.share, load_vec3(before, 0), load_vec3(before + floats_per_key, 0) * step.share);
-}
-
-// Three numbers of a vertex, which begin at `values` at the first key.
+// Whether a mesh may deform is known where the code for it is worth its place: `Deforms` says it.
+template <bool Deforms>
 inline Vec3 at_moment(const Mesh& mesh, const float* values, float time) {
-  if (mesh.segments != 0) [[unlikely]]
-    return deformed(values, mesh.floats_per_key(), mesh.segments, time);
+  if constexpr (Deforms) {
+    if (mesh.segments != 0) {
+      const Step step = step_at(time, mesh.segments);
+      const float* before = values + mesh.floats_per_key() * step.segment;
+      return fma(1.0f - step.share, load_vec3(before, 0), load_vec3(before + mesh.floats_per_key(), 0) * step.share);
+    }
+  }
   return load_vec3(values, 0);
 }
 
+template <bool Deforms>
 inline Triangle triangle_of(const SceneView& scene, const Mesh& mesh, uint32_t primitive, float time) {
   const uint32_t* index = scene.at(mesh.indices) + size_t{3} * primitive;
   const float* vertices = scene.at(mesh.vertices);
   const float* v0 = vertices + size_t{mesh.stride} * index[0];
   const float* v1 = vertices + size_t{mesh.stride} * index[1];
   const float* v2 = vertices + size_t{mesh.stride} * index[2];
-  return {at_moment(mesh, v0, time), at_moment(mesh, v1, time), at_moment(mesh, v2, time), v0, v1, v2};
+  return {at_moment<Deforms>(mesh, v0, time),
+          at_moment<Deforms>(mesh, v1, time),
+          at_moment<Deforms>(mesh, v2, time),
+          v0,
+          v1,
+          v2};
 }
 
 // Interpolated normal at barycentric coordinates of vertices 1 and 2, of any length; only for meshes that have normals.
+template <bool Deforms>
 inline Vec3 vertex_normal(const Mesh& mesh, const Triangle& tri, float u, float v, float time) {
-  const Vec3 n0 = at_moment(mesh, tri.v0 + mesh.normal, time);
-  const Vec3 n1 = at_moment(mesh, tri.v1 + mesh.normal, time);
-  const Vec3 n2 = at_moment(mesh, tri.v2 + mesh.normal, time);
+  const Vec3 n0 = at_moment<Deforms>(mesh, tri.v0 + mesh.normal, time);
+  const Vec3 n1 = at_moment<Deforms>(mesh, tri.v1 + mesh.normal, time);
+  const Vec3 n2 = at_moment<Deforms>(mesh, tri.v2 + mesh.normal, time);
   return fma(1.0f - u - v, n0, fma(u, n1, n2 * v));
 }
 
