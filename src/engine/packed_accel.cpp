@@ -47,7 +47,7 @@ PackedScene::PackedScene(const SceneView& view) : view_(view) {
         groups_.push_back({});
         lane = 0;
       }
-      const Triangle tri = triangle_of<false>(view, mesh, p, 0.0f);
+      const Triangle tri = triangle_of(view, mesh, p, 0.0f);
       Group& group = groups_.back();
       put(group.p0, lane, tri.p0);
       put(group.p1, lane, tri.p1);

@@ -64,8 +64,7 @@ struct MaterialRecord {
 struct GeometryRecord {
   Tagged shape;  // Mesh, Sphere or Disk; see geometry/list.h
   uint32_t material;
-  uint32_t lights;   // first entry in light_of_primitive; none: does not emit
-  uint32_t deforms;  // it is a mesh of several keys
+  uint32_t lights;  // first entry in light_of_primitive; none: does not emit
 };
 
 // A copy of the geometries [first, first + count) under a transform.

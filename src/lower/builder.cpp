@@ -161,14 +161,15 @@ float SceneBuilder::scene_radius() const {
   return scene_bounds_.empty() ? 1.0f : std::max(0.5f * length(scene_bounds_.high - scene_bounds_.low), 1e-6f);
 }
 
-uint32_t SceneBuilder::add_geometry(const GeometryRecord& record, const Bounds& bounds, bool prototype) {
+uint32_t SceneBuilder::add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds,
+                                    bool prototype) {
   const auto number = static_cast<uint32_t>(geometries_.size());
   if (!prototype) {
     if (root_.top_geometries != number) throw std::logic_error("prototypes must be added after all other shapes");
     ++root_.top_geometries;
     scene_bounds_.grow(bounds);
   }
-  geometries_.push_back(record);
+  geometries_.push_back({shape, material, lights});
   bounds_.push_back(bounds);
   return number;
 }
@@ -210,8 +211,7 @@ uint32_t SceneBuilder::add_mesh(const PlacedMesh& placed, uint32_t material, boo
   mesh.vertices = store<float>(placed.vertices);
   mesh.indices = store<uint32_t>(placed.indices);
   mesh.colors = store<float>(placed.colors);
-  const Tagged shape = {tag_of<Mesh>(Shapes{}), pool_.add(mesh)};
-  return add_geometry({shape, material, lights, mesh.segments != 0 ? 1u : 0u}, placed.bounds, prototype);
+  return add_geometry({tag_of<Mesh>(Shapes{}), pool_.add(mesh)}, material, lights, placed.bounds, prototype);
 }
 
 template <class Shape>
@@ -220,7 +220,7 @@ uint32_t SceneBuilder::add_analytic(const Shape& shape, uint32_t material, bool 
   const LightPlace place = {static_cast<uint32_t>(geometries_.size()), none, 0};
   const uint32_t lights = prototype ? none : add_surface_light(light_of(shape), materials_.at(material), place);
   const Bounds bounds = {shape.center - radius, shape.center + radius};
-  return add_geometry({{tag_of<Shape>(Shapes{}), pool_.add(shape)}, material, lights, 0}, bounds, prototype);
+  return add_geometry({tag_of<Shape>(Shapes{}), pool_.add(shape)}, material, lights, bounds, prototype);
 }
 
 uint32_t SceneBuilder::add_shape(std::string_view type, const Values& values, const std::optional<Matrix>& transform,
@@ -265,10 +265,9 @@ void SceneBuilder::add_instances(uint32_t first, uint32_t count, std::span<const
 }
 
 uint32_t SceneBuilder::repeat_geometry(uint32_t geometry) {
-  GeometryRecord record = geometries_.at(geometry);
-  record.lights = none;
+  const GeometryRecord record = geometries_.at(geometry);
   const Bounds bounds = bounds_.at(geometry);
-  return add_geometry(record, bounds, true);
+  return add_geometry(record.shape, record.material, none, bounds, true);
 }
 
 uint64_t SceneBuilder::most_lights(uint32_t first, uint32_t count, std::optional<uint32_t> material) const {

@@ -83,7 +83,7 @@ class SceneBuilder {
   bool any_textured(const Values& values) const;
   bool bounds_body(uint32_t material) const;
   MaterialRecord material_with(const Values& header, std::optional<SpectrumRef> emission);
-  uint32_t add_geometry(const GeometryRecord& record, const Bounds& bounds, bool prototype);
+  uint32_t add_geometry(Tagged shape, uint32_t material, uint32_t lights, const Bounds& bounds, bool prototype);
   // The lights of an instance's copy of a geometry, or none; those of a moving one stay in its prototype's space.
   uint32_t copied_lights(const Matrix& matrix, const MaterialRecord& material, LightPlace place, uint32_t motion);
   // What fills a body of a material with these values; none if it is no dielectric.

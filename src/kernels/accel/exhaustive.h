@@ -15,24 +15,31 @@ struct Exhaustive {
   ACCURAY_NOINLINE Hit closest(const Ray& ray) const {
     Hit hit;
     hit.t = ray.far;
-    meet(ray, 0, scene->root->top_geometries, none, hit);
-    for (uint32_t i = 0; i < scene->root->instances.count; ++i) {
-      const InstanceRecord& instance = scene->instances[i];
-      if (instance.motion != none) {
-        meet(into_moving(*scene, instance.motion, ray), instance.first, instance.count, i, hit);
-        continue;
-      }
-      Ray local = ray;
-      local.origin = instance.to_world.point_back(ray.origin);
-      local.direction = instance.to_world.vector_back(ray.direction);
-      meet(local, instance.first, instance.count, i, hit);
+    // First the scene itself, then its instances: one loop, so that a GPU's thread keeps one copy of what is in it.
+    uint32_t first = 0;
+    uint32_t count = scene->root->top_geometries;
+    Ray local = ray;
+    for (uint32_t next = 0;; ++next) {
+      meet(local, first, count, next - 1, hit);
+      if (next == scene->root->instances.count) break;
+      const InstanceRecord& instance = scene->instances[next];
+      first = instance.first;
+      count = instance.count;
+      local = carried(instance, ray);
     }
     return hit;
   }
   float transmittance(const Ray& ray) const { return closest(ray).geometry == none ? 1.0f : 0.0f; }
 
  private:
+  Ray carried(const InstanceRecord& instance, Ray ray) const {
+    if (instance.motion != none) return into_moving(*scene, instance.motion, ray);
+    ray.origin = instance.to_world.point_back(ray.origin);
+    ray.direction = instance.to_world.vector_back(ray.direction);
+    return ray;
+  }
   void meet(const Ray& ray, uint32_t first, uint32_t count, uint32_t instance, Hit& hit) const {
+#pragma unroll 1
     for (uint32_t g = first; g < first + count; ++g) {
       const GeometryRecord& geometry = scene->geometries[g];
       if (geometry.shape.tag == tag_of<Mesh>(Shapes{})) {
@@ -46,8 +53,9 @@ struct Exhaustive {
     }
   }
   void meet_mesh(const Ray& ray, const Mesh& mesh, uint32_t geometry, uint32_t instance, Hit& hit) const {
+#pragma unroll 1
     for (uint32_t p = 0; p < mesh.indices.count / 3; ++p) {
-      const Triangle tri = triangle_of<true>(*scene, mesh, p, ray.time);
+      const Triangle tri = triangle_of(*scene, mesh, p, ray.time);
       TriangleHit found;
       if (intersect_triangle(tri.p0, tri.p1, tri.p2, ray, hit.t, found)) {
         hit = {found.t, found.u, found.v, p, geometry, instance};

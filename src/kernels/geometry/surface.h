@@ -48,10 +48,9 @@ inline Hit inset(Hit hit, float margin) {
 }
 
 // `rounding` is what the point will be rounded by after this, in the mesh's own space.
-template <bool Deforms>
 inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& met, float time, float rounding,
                           Surface& s) {
-  const Triangle tri = triangle_of<Deforms>(scene, mesh, met.primitive, time);
+  const Triangle tri = triangle_of(scene, mesh, met.primitive, time);
   const Vec3 e1 = tri.p1 - tri.p0;
   const Vec3 e2 = tri.p2 - tri.p0;
   const Vec3 n0 = cross(e1, e2);
@@ -63,7 +62,7 @@ inline void place_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& m
   s.normal = n0 * (1.0f / doubled_area);
   s.shading = s.normal;
   if (mesh.normal != 0) {
-    const Vec3 n = vertex_normal<Deforms>(mesh, tri, hit.u, hit.v, time);
+    const Vec3 n = vertex_normal(mesh, tri, hit.u, hit.v, time);
     const float squared = length_squared(n);
     if (squared > 0.0f && is_finite(squared)) {
       s.shading = n * (1.0f / sqrt(squared));
@@ -90,11 +89,10 @@ inline void place_on_disk(const Disk& disk, const Ray& ray, const Hit& hit, Surf
   s.error = fma(gamma(10), abs(disk.center), Vec3{size, size, size});
 }
 
-template <bool Deforms>
 inline void place_on_shape(const SceneView& scene, const GeometryRecord& geometry, const Ray& ray, const Hit& hit,
                            float rounding, Surface& s) {
   if (geometry.shape.tag == tag_of<Mesh>(Shapes{})) {
-    place_on_mesh<Deforms>(scene, scene.as<Mesh>(geometry.shape), hit, ray.time, rounding, s);
+    place_on_mesh(scene, scene.as<Mesh>(geometry.shape), hit, ray.time, rounding, s);
   } else if (geometry.shape.tag == tag_of<Sphere>(Shapes{})) {
     place_on_sphere(scene.as<Sphere>(geometry.shape), ray, hit, s);
   } else {
@@ -118,7 +116,7 @@ inline void place_on_still(const SceneView& scene, const InstanceRecord& instanc
   const Transform& m = instance.to_world;
   const float scale = length({m.m[0][0], m.m[1][0], m.m[2][0]});
   const float rounding = gamma(10) * max_component(m.magnitude(fma(hit.t, ray.direction, ray.origin))) / scale;
-  place_on_shape<true>(scene, scene.geometries[hit.geometry], ray, hit, rounding, s);
+  place_on_shape(scene, scene.geometries[hit.geometry], ray, hit, rounding, s);
   to_world(instance, s);
 }
 
@@ -129,20 +127,18 @@ inline void place_on_moving(const SceneView& scene, const InstanceRecord& instan
   ray.origin = at.to_object.point(ray.origin);
   ray.direction = at.to_object.vector(ray.direction);
   const Vec3 rounding = at.to_object.spread(rounding_at(moment, fma(hit.t, ray.direction, ray.origin)));
-  place_on_shape<true>(scene, scene.geometries[hit.geometry], ray, hit, max_component(rounding), s);
+  place_on_shape(scene, scene.geometries[hit.geometry], ray, hit, max_component(rounding), s);
   s.error = at.to_world.spread(s.error) + rounding_at(moment, s.point);
   s.point = at.to_world.point(s.point);
   s.normal = normal_by(at.to_object, s.normal);
   s.shading = normal_by(at.to_object, s.shading);
 }
 
-// Position, error and normals on an instance, or on a mesh that deforms. Never inlined: threads of a GPU have little
-// memory.
-ACCURAY_NOINLINE inline Surface place_apart(const SceneView& scene, Ray ray, Hit hit) {
+// Position, error and normals on an instance. Never inlined: threads of a GPU have little memory.
+ACCURAY_NOINLINE inline Surface place_on_instance(const SceneView& scene, Ray ray, Hit hit) {
+  const InstanceRecord& instance = scene.instances[hit.instance];
   Surface s;
-  if (hit.instance == none) {
-    place_on_shape<true>(scene, scene.geometries[hit.geometry], ray, hit, 0.0f, s);
-  } else if (const InstanceRecord& instance = scene.instances[hit.instance]; instance.motion == none) {
+  if (instance.motion == none) {
     place_on_still(scene, instance, ray, hit, s);
   } else {
     place_on_moving(scene, instance, ray, hit, s);
@@ -154,16 +150,14 @@ ACCURAY_NOINLINE inline Surface place_apart(const SceneView& scene, Ray ray, Hit
 inline Surface surface_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
   const GeometryRecord& geometry = scene.geometries[hit.geometry];
   Surface s;
-  if (hit.instance == none && geometry.deforms == 0) {
-    place_on_shape<false>(scene, geometry, ray, hit, 0.0f, s);
-  } else {
-    s = place_apart(scene, ray, hit);
-  }
-  s.material = geometry.material;
   uint32_t lights = geometry.lights;
-  if (hit.instance != none) {
+  if (hit.instance == none) {
+    place_on_shape(scene, geometry, ray, hit, 0.0f, s);
+    s.material = geometry.material;
+  } else {
+    s = place_on_instance(scene, ray, hit);
     const InstanceRecord& instance = scene.instances[hit.instance];
-    if (instance.material != none) s.material = instance.material;
+    s.material = instance.material == none ? geometry.material : instance.material;
     lights = instance.lights == none ? none : scene.lights_of_instance[instance.lights + hit.geometry - instance.first];
   }
   s.light = lights == none ? none : scene.light_of_primitive[lights + hit.primitive];

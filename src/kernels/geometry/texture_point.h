@@ -30,9 +30,8 @@ inline void any_tangents(Vec3 normal, TexturePoint& p) {
   p.dpdv = frame.y;
 }
 
-template <bool Deforms>
 inline TexturePoint point_on_mesh(const SceneView& scene, const Mesh& mesh, const Hit& hit, Vec3 normal, float time) {
-  const Triangle tri = triangle_of<Deforms>(scene, mesh, hit.primitive, time);
+  const Triangle tri = triangle_of(scene, mesh, hit.primitive, time);
   const Vec3 e1 = tri.p1 - tri.p0;
   const Vec3 e2 = tri.p2 - tri.p0;
   if (mesh.uv == 0) return {{hit.u, hit.v}, e1, e2};
@@ -85,12 +84,11 @@ inline Vec3 into_object(const SceneView& scene, const Hit& hit, float time, Vec3
 }
 
 // `point` and `normal` in the shape's own space.
-template <bool Deforms>
 inline TexturePoint point_on_shape(const SceneView& scene, const Hit& hit, Vec3 point, Vec3 normal, float time) {
   const Tagged shape = scene.geometries[hit.geometry].shape;
   TexturePoint p;
   if (shape.tag == tag_of<Mesh>(Shapes{})) {
-    p = point_on_mesh<Deforms>(scene, scene.as<Mesh>(shape), hit, normal, time);
+    p = point_on_mesh(scene, scene.as<Mesh>(shape), hit, normal, time);
   } else if (shape.tag == tag_of<Sphere>(Shapes{})) {
     const Sphere& sphere = scene.as<Sphere>(shape);
     p = point_on_sphere(normalize(point - sphere.center), sphere.radius);
@@ -104,9 +102,9 @@ inline TexturePoint point_on_shape(const SceneView& scene, const Hit& hit, Vec3 
   return p;
 }
 
-// On an instance, or on a mesh that deforms. Never inlined: threads of a GPU have little memory.
-ACCURAY_NOINLINE inline TexturePoint point_apart(const SceneView& scene, Hit hit, Vec3 point, Vec3 normal, float time) {
-  if (hit.instance == none) return point_on_shape<true>(scene, hit, point, normal, time);
+// Never inlined: threads of a GPU have little memory.
+ACCURAY_NOINLINE inline TexturePoint point_on_instance(const SceneView& scene, Hit hit, Vec3 point, Vec3 normal,
+                                                       float time) {
   const InstanceRecord& instance = scene.instances[hit.instance];
   Transform to_world = instance.to_world;
   if (instance.motion != none) {
@@ -118,7 +116,7 @@ ACCURAY_NOINLINE inline TexturePoint point_apart(const SceneView& scene, Hit hit
     point = to_world.point_back(point);
     normal = normalize(to_world.vector_back(normal));
   }
-  TexturePoint p = point_on_shape<true>(scene, hit, point, normal, time);
+  TexturePoint p = point_on_shape(scene, hit, point, normal, time);
   p.dpdu = to_world.vector(p.dpdu);
   p.dpdv = to_world.vector(p.dpdv);
   return p;
@@ -126,9 +124,8 @@ ACCURAY_NOINLINE inline TexturePoint point_apart(const SceneView& scene, Hit hit
 
 // `hit` must have met something at this time, and `surface` be what surface_at() made of it.
 inline TexturePoint texture_point(const SceneView& scene, const Hit& hit, const Surface& surface, float time) {
-  if (hit.instance == none && scene.geometries[hit.geometry].deforms == 0)
-    return point_on_shape<false>(scene, hit, surface.point, surface.normal, time);
-  return point_apart(scene, hit, surface.point, surface.normal, time);
+  if (hit.instance == none) return point_on_shape(scene, hit, surface.point, surface.normal, time);
+  return point_on_instance(scene, hit, surface.point, surface.normal, time);
 }
 
 }  // namespace accuray

@@ -17,43 +17,42 @@ inline Vec3 load_vec3(const float* values, uint32_t index) {
 
 struct Triangle {
   Vec3 p0, p1, p2;
-  const float *v0, *v1, *v2;  // the vertices, at the first key
+  const float *v0, *v1, *v2;  // the vertices, at the key before
 };
 
-// Whether a mesh may deform is known where the code for it is worth its place: `Deforms` says it.
-template <bool Deforms>
-inline Vec3 at_moment(const Mesh& mesh, const float* values, float time) {
-  if constexpr (Deforms) {
-    if (mesh.segments != 0) {
-      const Step step = step_at(time, mesh.segments);
-      const float* before = values + mesh.floats_per_key() * step.segment;
-      return fma(1.0f - step.share, load_vec3(before, 0), load_vec3(before + mesh.floats_per_key(), 0) * step.share);
-    }
-  }
-  return load_vec3(values, 0);
+// Floats from the first key to the one before a moment and from there to the next, and how far along it is.
+struct KeyPair {
+  uint64_t before, next;
+  float share;
+};
+inline KeyPair key_pair(const Mesh& mesh, float time) {
+  if (mesh.segments == 0) return {0, 0, 0.0f};
+  const Step step = step_at(time, mesh.segments);
+  return {mesh.floats_per_key() * step.segment, mesh.floats_per_key(), step.share};
 }
 
-template <bool Deforms>
+// Three numbers of a vertex. Still meshes go the same way, with a share of 0: a branch for each vertex, and calls for
+// those that deform, cost a GPU's thread a tenth of its stack.
+inline Vec3 at_moment(const float* values, const KeyPair& keys) {
+  return fma(1.0f - keys.share, load_vec3(values, 0), load_vec3(values + keys.next, 0) * keys.share);
+}
+
 inline Triangle triangle_of(const SceneView& scene, const Mesh& mesh, uint32_t primitive, float time) {
+  const KeyPair keys = key_pair(mesh, time);
   const uint32_t* index = scene.at(mesh.indices) + size_t{3} * primitive;
-  const float* vertices = scene.at(mesh.vertices);
+  const float* vertices = scene.at(mesh.vertices) + keys.before;
   const float* v0 = vertices + size_t{mesh.stride} * index[0];
   const float* v1 = vertices + size_t{mesh.stride} * index[1];
   const float* v2 = vertices + size_t{mesh.stride} * index[2];
-  return {at_moment<Deforms>(mesh, v0, time),
-          at_moment<Deforms>(mesh, v1, time),
-          at_moment<Deforms>(mesh, v2, time),
-          v0,
-          v1,
-          v2};
+  return {at_moment(v0, keys), at_moment(v1, keys), at_moment(v2, keys), v0, v1, v2};
 }
 
 // Interpolated normal at barycentric coordinates of vertices 1 and 2, of any length; only for meshes that have normals.
-template <bool Deforms>
 inline Vec3 vertex_normal(const Mesh& mesh, const Triangle& tri, float u, float v, float time) {
-  const Vec3 n0 = at_moment<Deforms>(mesh, tri.v0 + mesh.normal, time);
-  const Vec3 n1 = at_moment<Deforms>(mesh, tri.v1 + mesh.normal, time);
-  const Vec3 n2 = at_moment<Deforms>(mesh, tri.v2 + mesh.normal, time);
+  const KeyPair keys = key_pair(mesh, time);
+  const Vec3 n0 = at_moment(tri.v0 + mesh.normal, keys);
+  const Vec3 n1 = at_moment(tri.v1 + mesh.normal, keys);
+  const Vec3 n2 = at_moment(tri.v2 + mesh.normal, keys);
   return fma(1.0f - u - v, n0, fma(u, n1, n2 * v));
 }
 

@@ -32,11 +32,11 @@ inline Hit hit_on_light(const SceneView& scene, uint32_t light, Vec3 point, floa
   } else if (place.instance != none) {
     point = scene.instances[place.instance].to_world.point_back(point);
   }
-  Vec2 b = barycentric(triangle_of<false>(scene, mesh, hit.primitive, time), point);
+  Vec2 b = barycentric(triangle_of(scene, mesh, hit.primitive, time), point);
   const bool outside = min(b.x, min(b.y, 1.0f - b.x - b.y)) < 0.0f;
   if (outside && scene.lights[light].light.tag == tag_of<QuadLight>(Lights{})) {
     ++hit.primitive;
-    b = barycentric(triangle_of<false>(scene, mesh, hit.primitive, time), point);
+    b = barycentric(triangle_of(scene, mesh, hit.primitive, time), point);
   }
   hit.u = b.x;
   hit.v = b.y;
