@@ -87,6 +87,7 @@ inline u32x4 reverse_bits(u32x4 a) {
 
 #define ACCURAY_INLINE __forceinline__
 #define ACCURAY_NOINLINE __noinline__
+#define ACCURAY_NO_UNROLL _Pragma("unroll 1")
 #define ACCURAY_OFFSET_OF(type, member) static_cast<uint32_t>(__builtin_offsetof(type, member))
 
 #else  // host
@@ -151,6 +152,7 @@ inline uint32_t reverse_bits(uint32_t x) {
 
 #define ACCURAY_INLINE inline __attribute__((always_inline))
 #define ACCURAY_NOINLINE __attribute__((noinline))
+#define ACCURAY_NO_UNROLL
 #define ACCURAY_OFFSET_OF(type, member) static_cast<accuray::uint32_t>(offsetof(type, member))
 
 #endif

@@ -39,7 +39,7 @@ struct Exhaustive {
     return ray;
   }
   void meet(const Ray& ray, uint32_t first, uint32_t count, uint32_t instance, Hit& hit) const {
-#pragma unroll 1
+    ACCURAY_NO_UNROLL
     for (uint32_t g = first; g < first + count; ++g) {
       const GeometryRecord& geometry = scene->geometries[g];
       if (geometry.shape.tag == tag_of<Mesh>(Shapes{})) {
@@ -53,7 +53,7 @@ struct Exhaustive {
     }
   }
   void meet_mesh(const Ray& ray, const Mesh& mesh, uint32_t geometry, uint32_t instance, Hit& hit) const {
-#pragma unroll 1
+    ACCURAY_NO_UNROLL
     for (uint32_t p = 0; p < mesh.indices.count / 3; ++p) {
       const Triangle tri = triangle_of(*scene, mesh, p, ray.time);
       TriangleHit found;
