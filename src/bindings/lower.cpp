@@ -356,6 +356,22 @@ void bind_lamps(nb::module_& lower) {
       "type"_a, "values"_a, "photometry"_a.none(), "Flux of a named light that is not infinite per unit of emission.");
 }
 
+void bind_cameras(nb::module_& lower) {
+  lower.def(
+      "with_camera",
+      [](const Block& block, const std::string& type, const nb::dict& values, double width, double height) {
+        return with_camera(block, type, to_values(values), {width, height});
+      },
+      "block"_a, "type"_a, "values"_a, "width"_a, "height"_a,
+      "The block seen through another camera, of the kind that it has; None if the camera is of another kind.");
+  lower.def(
+      "camera_view",
+      [](const std::string& type, const nb::dict& values, double width, double height) {
+        return camera_view(type, to_values(values), {width, height});
+      },
+      "type"_a, "values"_a, "width"_a, "height"_a, "How long things are in a camera's picture (mesh.View).");
+}
+
 }  // namespace
 
 void bind_lower(nb::module_& module) {
@@ -397,19 +413,7 @@ void bind_lower(nb::module_& module) {
 
   bind_lamps(lower);
   bind_shared(lower);
-  lower.def(
-      "with_camera",
-      [](const Block& block, const std::string& type, const nb::dict& values, double width, double height) {
-        return with_camera(block, type, to_values(values), {width, height});
-      },
-      "block"_a, "type"_a, "values"_a, "width"_a, "height"_a,
-      "The block seen through another camera, of the kind that it has; None if the camera is of another kind.");
-  lower.def(
-      "camera_view",
-      [](const std::string& type, const nb::dict& values, double width, double height) {
-        return camera_view(type, to_values(values), {width, height});
-      },
-      "type"_a, "values"_a, "width"_a, "height"_a, "How long things are in a camera's picture (mesh.View).");
+  bind_cameras(lower);
   lower.attr("SOLIDS") = names_of(Solids{});
   lower.def("tessellate", &tessellated, "type"_a, "values"_a, "newell"_a.none(),
             "A shape of SOLIDS or a rectangle as (positions, indices, normals or None, uvs); a teapot from (512, 3) "

@@ -35,8 +35,8 @@ QuadLight quad_light(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   quad.x = u * (1.0f / quad.width);
   quad.y = normalize(fma(-dot(v, quad.x), quad.x, v));
   quad.normal = normalize(cross(u, v));
-  const Vec3 first = triangle_error({a, b, c, 0, 0, 0});
-  const Vec3 second = triangle_error({a, c, d, 0, 0, 0});
+  const Vec3 first = triangle_error({a, b, c, nullptr, nullptr, nullptr});
+  const Vec3 second = triangle_error({a, c, d, nullptr, nullptr, nullptr});
   quad.error = {max(first.x, second.x), max(first.y, second.y), max(first.z, second.z)};
   return quad;
 }
@@ -75,7 +75,8 @@ std::vector<uint32_t> LightTable::add_mesh(std::span<const float> positions, std
       }
     }
     const Vec3 normal = cross(b - a, c - a);
-    const TriangleLight light{a, b, c, normalize(normal), triangle_error({a, b, c, 0, 0, 0}), 0.5f * length(normal)};
+    const TriangleLight light{
+        a, b, c, normalize(normal), triangle_error({a, b, c, nullptr, nullptr, nullptr}), 0.5f * length(normal)};
     light_of[t] = add(light, emission, both_sides, place, {}, motion);
   }
   return light_of;
